@@ -1,0 +1,1 @@
+"""The command line of Isotorque: one file per command."""

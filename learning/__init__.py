@@ -1,0 +1,1 @@
+"""The robot that knows nothing: simulation, discovery, exploration, learners, recordings."""

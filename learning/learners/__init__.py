@@ -1,0 +1,1 @@
+"""Learners of the inverse statics model, each with the scikit-learn interface."""

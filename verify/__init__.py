@@ -1,0 +1,1 @@
+"""Judges: what was learned held against what is true; reports, figures, test tools."""
