@@ -1,0 +1,1 @@
+"""Isotorque: the statics of robot arms and their symmetries."""
