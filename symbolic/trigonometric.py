@@ -1,0 +1,346 @@
+"""Trigonometric polynomials with integer frequencies: the normal form of gravity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import sympy
+from flint import fmpq
+from numpy.typing import ArrayLike, NDArray
+
+from symbolic.errors import InputError
+
+Coefficients = NDArray[Any]
+
+
+def is_zero(value: Any) -> bool:
+    """Say whether a float, rational or SymPy coefficient is exactly zero."""
+    if isinstance(value, sympy.Basic):
+        return bool(value.is_zero) or (not value.is_Atom and sympy.expand(value) == 0)
+    return bool(value == 0)
+
+
+@dataclass(frozen=True, eq=False)
+class TrigonometricPolynomial:
+    """A real function f(q) = sum over k of cos_k cos(k.q) + sin_k sin(k.q).
+
+    Attributes
+    ----------
+    frequencies : (m, n) int array
+        One row k per term; of each pair +-k only the one whose first nonzero entry is positive;
+        no row twice.
+    cos, sin : (m,) arrays
+        Coefficients: float64, or objects (``flint.fmpq`` for exact rationals, SymPy expressions).
+    names : tuple of str
+        Names of the n variables, for printing.
+
+    Notes
+    -----
+    The constructor brings any rows into this form (rows -k are folded onto k, equal rows added)
+    and drops terms that are exactly zero.
+
+    Examples
+    --------
+    >>> f = TrigonometricPolynomial([[1, 0], [1, 1]], [0.0, 0.0], [18.4, 6.1])
+    >>> print(f)
+    18.4 sin(q1) + 6.1 sin(q1 + q2)
+    >>> print(f.derivative(1))
+    6.1 cos(q1 + q2)
+    """
+
+    frequencies: NDArray[np.int64]
+    cos: Coefficients
+    sin: Coefficients
+    names: tuple[str, ...] = field(default=())
+
+    def __init__(
+        self,
+        frequencies: ArrayLike,
+        cos: ArrayLike,
+        sin: ArrayLike,
+        names: tuple[str, ...] | None = None,
+    ) -> None:
+        k = np.asarray(frequencies)
+        if k.ndim != 2:
+            raise InputError("trigonometric polynomial", "shape of frequencies", k.shape, "(m, n)")
+        if k.size and not np.all(k == np.round(k.astype(float))):
+            raise InputError("trigonometric polynomial", "frequencies", k, "integers")
+        k = k.astype(np.int64)
+        a, b = (_coefficients(x, len(k)) for x in (cos, sin))
+        if a.dtype != b.dtype:
+            a, b = a.astype(object), b.astype(object)
+        k, a, b = _folded(k, a, b)
+        object.__setattr__(self, "frequencies", k)
+        object.__setattr__(self, "cos", a)
+        object.__setattr__(self, "sin", b)
+        if names is None:
+            names = tuple(f"q{i + 1}" for i in range(k.shape[1]))
+        object.__setattr__(self, "names", tuple(names))
+
+    @property
+    def n(self) -> int:
+        """Number of variables."""
+        return int(self.frequencies.shape[1])
+
+    def __len__(self) -> int:
+        return len(self.frequencies)
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the coefficients are exact rationals."""
+        return self.cos.dtype == object and all(isinstance(x, fmpq) for x in (*self.cos, *self.sin))
+
+    @property
+    def is_symbolic(self) -> bool:
+        """Whether any coefficient is a SymPy expression."""
+        return self.cos.dtype == object and not self.is_exact
+
+    # -- values ---------------------------------------------------------------------------------
+
+    @cached_property
+    def _numeric(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        f = self.to_float()
+        return f.frequencies.astype(float), f.cos, f.sin
+
+    def to_float(self) -> TrigonometricPolynomial:
+        """Return the polynomial with float64 coefficients (correctly rounded from rationals).
+
+        Raises
+        ------
+        InputError
+            If a coefficient contains symbols.
+        """
+        if self.cos.dtype != object:
+            return self
+        return self._map(_to_float, np.float64)
+
+    def evaluate(self, q: ArrayLike) -> NDArray[np.float64]:
+        """Evaluate at configurations ``q`` of shape (..., n); result of shape (...)."""
+        k, a, b = self._numeric
+        phase = self._points(q) @ k.T
+        return np.asarray(np.cos(phase) @ a + np.sin(phase) @ b)
+
+    __call__ = evaluate
+
+    def gradient(self, q: ArrayLike) -> NDArray[np.float64]:
+        """Return the gradient at ``q`` (..., n), of shape (..., n)."""
+        k, a, b = self._numeric
+        phase = self._points(q) @ k.T
+        return np.asarray((np.cos(phase) * b - np.sin(phase) * a) @ k)
+
+    def hessian(self, q: ArrayLike) -> NDArray[np.float64]:
+        """Return the matrix of second derivatives at ``q`` (..., n), of shape (..., n, n)."""
+        k, a, b = self._numeric
+        phase = self._points(q) @ k.T
+        weight = -(np.cos(phase) * a + np.sin(phase) * b)
+        return np.einsum("...m,mi,mj->...ij", weight, k, k)
+
+    def _points(self, q: ArrayLike) -> NDArray[np.float64]:
+        points = np.asarray(q, dtype=float)
+        if points.shape[-1:] != (self.n,):
+            raise InputError("configuration", "shape", points.shape, f"(..., {self.n})")
+        return points
+
+    def complex(self) -> NDArray[np.complex128]:
+        """Return C_k = (cos_k - i sin_k) / 2, so that f = sum over +-k of C_k exp(i k.q)."""
+        _, a, b = self._numeric
+        return (a - 1j * b) / 2
+
+    # -- algebra --------------------------------------------------------------------------------
+
+    def derivative(self, variable: int) -> TrigonometricPolynomial:
+        """Return the derivative with respect to variable number ``variable``."""
+        factor = [_integer(int(x), self.cos) for x in self.frequencies[:, variable]]
+        a = np.array([f * b for f, b in zip(factor, self.sin, strict=True)], dtype=self.cos.dtype)
+        b = np.array([-f * a for f, a in zip(factor, self.cos, strict=True)], dtype=self.cos.dtype)
+        return TrigonometricPolynomial(self.frequencies, a, b, self.names)
+
+    def __add__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        if other.n != self.n:
+            raise InputError("sum", "number of variables", other.n, str(self.n))
+        return TrigonometricPolynomial(
+            np.concatenate([self.frequencies, other.frequencies]),
+            np.concatenate([self.cos, other.cos]),
+            np.concatenate([self.sin, other.sin]),
+            self.names,
+        )
+
+    def __neg__(self) -> TrigonometricPolynomial:
+        return self * -1
+
+    def __sub__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        return self + (-other)
+
+    def __mul__(self, factor: Any) -> TrigonometricPolynomial:
+        return TrigonometricPolynomial(
+            self.frequencies,
+            np.array([x * factor for x in self.cos], dtype=self.cos.dtype),
+            np.array([x * factor for x in self.sin], dtype=self.cos.dtype),
+            self.names,
+        )
+
+    __rmul__ = __mul__
+
+    def substitute(self, A: ArrayLike, d: ArrayLike) -> TrigonometricPolynomial:
+        """Return f(A q + d) for an integer matrix ``A`` (n, n) and offsets ``d`` (n,) [rad].
+
+        Raises
+        ------
+        InputError
+            If ``A`` is not an integer matrix: the result would not be of this class.
+
+        Examples
+        --------
+        >>> f = TrigonometricPolynomial([[1, 1]], [0.0], [1.0])
+        >>> print(f.substitute([[-1, 0], [2, 1]], [0.0, 0.0]))
+        1 sin(q1 + q2)
+        """
+        matrix = np.asarray(A, dtype=float)
+        if matrix.shape != (self.n, self.n) or not np.all(matrix == np.round(matrix)):
+            raise InputError(
+                "substitution", "A", matrix.tolist(), f"an integer matrix {self.n} x {self.n}"
+            )
+        k, a, b = self._numeric
+        phase = k @ np.asarray(d, dtype=float)
+        c, s = np.cos(phase), np.sin(phase)
+        return TrigonometricPolynomial(k @ matrix, a * c + b * s, b * c - a * s, self.names)
+
+    # -- bounds ---------------------------------------------------------------------------------
+
+    def amplitudes(self) -> NDArray[np.float64]:
+        """Return sqrt(cos_k^2 + sin_k^2), shape (m,)."""
+        _, a, b = self._numeric
+        return np.hypot(a, b)
+
+    def sup_bound(self) -> float:
+        """Return a bound on |f(q)| over all q (the sum of amplitudes)."""
+        return float(self.amplitudes().sum())
+
+    def gradient_bound(self) -> NDArray[np.float64]:
+        """Return bounds on |df/dq_i| over all q, shape (n,)."""
+        return np.asarray(self.amplitudes() @ np.abs(self.frequencies), dtype=float)
+
+    # -- views ----------------------------------------------------------------------------------
+
+    def to_sympy(self, symbols: tuple[sympy.Symbol, ...] | None = None) -> sympy.Expr:
+        """Return the polynomial as a SymPy expression in ``symbols`` (default: the names)."""
+        q = symbols or sympy.symbols(self.names, real=True)
+        total = sympy.Integer(0)
+        for k, a, b in zip(self.frequencies.tolist(), self.cos, self.sin, strict=True):
+            phase = sympy.Add(*[c * x for c, x in zip(k, q, strict=True)])
+            total += _to_sympy(a) * sympy.cos(phase) + _to_sympy(b) * sympy.sin(phase)
+        return total
+
+    def __str__(self) -> str:
+        pieces: list[str] = []
+        for k, a, b in zip(self.frequencies.tolist(), self.cos, self.sin, strict=True):
+            phase = _phase_text(k, self.names)
+            for value, function in ((a, "cos"), (b, "sin")):
+                if is_zero(value):
+                    continue
+                wave = f"{function}({phase})" if any(k) else ""
+                pieces.append(_term_text(value, wave))
+        if not pieces:
+            return "0"
+        text = " + ".join(pieces)
+        return text.replace("+ -", "- ")
+
+    def _map(self, convert: Callable[[Any], Any], dtype: Any) -> TrigonometricPolynomial:
+        return TrigonometricPolynomial(
+            self.frequencies,
+            np.array([convert(x) for x in self.cos], dtype=dtype),
+            np.array([convert(x) for x in self.sin], dtype=dtype),
+            self.names,
+        )
+
+
+def _coefficients(values: ArrayLike, m: int) -> Coefficients:
+    array = np.asarray(values)
+    if array.shape != (m,):
+        raise InputError(
+            "trigonometric polynomial", "shape of coefficients", array.shape, f"({m},)"
+        )
+    if array.dtype == object:
+        return array
+    array = array.astype(np.float64)
+    if not np.all(np.isfinite(array)):
+        raise InputError("trigonometric polynomial", "coefficients", array, "finite numbers")
+    return array
+
+
+def _folded(
+    k: NDArray[np.int64], a: Coefficients, b: Coefficients
+) -> tuple[NDArray[np.int64], Coefficients, Coefficients]:
+    """Fold -k onto k, add equal rows, drop exact zeros; keep the order of first appearance."""
+    if not len(k):
+        return k, a, b
+    leading = np.zeros(len(k), dtype=np.int64)
+    for column in k.T[::-1]:
+        leading = np.where(column != 0, column, leading)
+    flip = leading < 0
+    if flip.any():
+        k = np.where(flip[:, None], -k, k)
+        b = b.copy()
+        b[flip] = -b[flip]
+    if a.dtype == object:
+        keep = np.array([not (is_zero(x) and is_zero(y)) for x, y in zip(a, b, strict=True)])
+    else:
+        keep = (a != 0) | (b != 0)
+    if not keep.all():
+        k, a, b = k[keep], a[keep], b[keep]
+    index: dict[bytes, int] = {}
+    place = np.array(
+        [index.setdefault(row.tobytes(), len(index)) for row in np.ascontiguousarray(k)]
+    )
+    if len(index) == len(k):
+        return k, a, b
+    first = np.array([int(np.argmax(place == j)) for j in range(len(index))])
+    new_a, new_b = a[first].copy(), b[first].copy()
+    for i, j in enumerate(place):
+        if i != first[j]:
+            new_a[j], new_b[j] = new_a[j] + a[i], new_b[j] + b[i]
+    return _folded(k[first], new_a, new_b)
+
+
+def _integer(value: int, like: Coefficients) -> Any:
+    if like.dtype != object:
+        return float(value)
+    return sympy.Integer(value) if any(isinstance(x, sympy.Basic) for x in like) else fmpq(value)
+
+
+def _to_float(value: Any) -> float:
+    if isinstance(value, fmpq):
+        return int(value.p) / int(value.q)
+    try:
+        return float(value)
+    except TypeError:
+        raise InputError(
+            "trigonometric polynomial", "coefficient", value, "a number (substitute the symbols)"
+        ) from None
+
+
+def _to_sympy(value: Any) -> sympy.Expr:
+    if isinstance(value, fmpq):
+        return sympy.Rational(int(value.p), int(value.q))
+    return sympy.sympify(value)
+
+
+def _phase_text(k: list[int], names: tuple[str, ...]) -> str:
+    text = ""
+    for factor, name in zip(k, names, strict=True):
+        if factor:
+            size = name if abs(factor) == 1 else f"{abs(factor)} {name}"
+            sign = " - " if factor < 0 else " + "
+            text += (sign if text else sign.strip(" +")) + size
+    return text
+
+
+def _term_text(value: Any, wave: str) -> str:
+    if isinstance(value, sympy.Basic):
+        return str(sympy.factor_terms(value) * sympy.Symbol(wave)) if wave else str(value)
+    number = f"{_to_float(value):.6g}"
+    return f"{number} {wave}".strip()
