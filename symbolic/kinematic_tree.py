@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -112,6 +112,31 @@ class KinematicTree:
             each(self.levers),
             each(self.gravity),
         )
+
+    def substitute(self, values: Mapping[str, float]) -> KinematicTree:
+        """Return a SymPy tree with numbers in place of symbols, given by name.
+
+        Raises
+        ------
+        InputError
+            For a name that occurs nowhere in the tree.
+
+        Examples
+        --------
+        >>> planar_arm(2).substitute({"m1": 5, "m2": 4}).masses
+        array([5, 4], dtype=object)
+        """
+        entries = [self.rotations, self.translations, self.axes, self.masses, self.levers]
+        symbols = {
+            symbol.name: symbol
+            for x in np.concatenate([np.ravel(e) for e in (*entries, self.gravity)])
+            for symbol in getattr(x, "free_symbols", ())
+        }
+        for name in values:
+            if name not in symbols:
+                raise InputError("kinematic tree", "symbol", name, ", ".join(sorted(symbols)))
+        numbers = {symbols[name]: value for name, value in values.items()}
+        return self.map(lambda x: x.subs(numbers))
 
     def exact(self) -> KinematicTree:
         """Return the tree with every float replaced by the rational number that it is.
