@@ -1,0 +1,84 @@
+"""What a judge says: a claim, how it is known, and where it fails if it does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Status(StrEnum):
+    """How a claim is known, from the strongest to the weakest, and refuted."""
+
+    PROVED = "proved"
+    BOUNDED = "bounded"
+    TESTED = "tested"
+    REFUTED = "refuted"
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """The judgement of one claim.
+
+    Attributes
+    ----------
+    claim : str
+        What was claimed, in one line.
+    status : Status
+        ``proved``: in exact arithmetic, for every configuration. ``bounded``: a bound that holds
+        for every configuration lies within the tolerance. ``tested``: no bound, but a search
+        found nothing beyond the tolerance. ``refuted``: the claim is false.
+    passed : bool
+        Whether the claim stands within the tolerance.
+    worst_error : float
+        For ``proved`` and ``bounded`` the bound, otherwise the largest error found; in the unit
+        of the claim, N m unless it says otherwise.
+    counterexample : (n,) array or None
+        For ``refuted``: the simplest configuration found where the claim fails [rad]; None where
+        the claim is not about single configurations.
+
+    Examples
+    --------
+    >>> verdict = Verdict("q1' = -q1", Status.REFUTED, 2.0, np.array([1.0]))
+    >>> verdict.passed
+    False
+    >>> print(verdict)
+    refuted: q1' = -q1 (worst error 2, at q = (1))
+    """
+
+    claim: str
+    status: Status
+    worst_error: float
+    counterexample: NDArray[np.float64] | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether the claim stands."""
+        return self.status is not Status.REFUTED
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the verdict as the command line prints it."""
+        return {
+            "claim": self.claim,
+            "status": str(self.status),
+            "passed": self.passed,
+            "worst_error": float(self.worst_error),
+            "counterexample": None
+            if self.counterexample is None
+            else [float(x) for x in self.counterexample],
+        }
+
+    def __str__(self) -> str:
+        where = ""
+        if self.counterexample is not None:
+            where = ", at q = (" + ", ".join(f"{x:.6g}" for x in self.counterexample) + ")"
+        return f"{self.status}: {self.claim} (worst error {self.worst_error:.3g}{where})"
+
+
+def all_passed(verdicts: Iterable[Verdict]) -> bool:
+    """Return whether every claim stands (also when there is none)."""
+    return all(verdict.passed for verdict in verdicts)
