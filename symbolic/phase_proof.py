@@ -1,0 +1,106 @@
+"""Exact proof that the offset congruences of a symmetry have a solution."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy
+from flint import fmpq
+from numpy.typing import NDArray
+
+from symbolic.trigonometric import TrigonometricPolynomial, is_zero
+
+if TYPE_CHECKING:
+    from symbolic.symmetries import Support
+
+Gauss = tuple[Any, Any]
+UNITS = ((1, 0), (0, 1), (-1, 0), (0, -1))
+
+
+class PhaseProof:
+    """Proofs for one potential with exact rational or SymPy coefficients.
+
+    Notes
+    -----
+    For (Y, s) put u_k = s_k C_{s_k Y k} / C_k. An exact offset d with exp(i k.d) = u_k for all k
+    exists iff every |u_k| = 1 and u respects every integer relation between the frequencies. The
+    second is checked on a basis h_j of the lattice they generate: with w_j = u(h_j), computed
+    from the few frequencies that generate it, u_k must equal the product of w_j^(c_kj), where
+    c_k are the coordinates of k. Everything is arithmetic in Q(i), nothing is rounded.
+
+    A support that leaves out terms (amplitude below 1e-12 of the largest) is never proved.
+    """
+
+    def __init__(self, potential: TrigonometricPolynomial, support: Support) -> None:
+        self.support = support
+        self.complete = len(support.K) == int(np.any(potential.frequencies, axis=1).sum())
+        index = {k.tobytes(): i for i, k in enumerate(np.ascontiguousarray(potential.frequencies))}
+        place = [index[k.tobytes()] for k in np.ascontiguousarray(support.K)]
+        # C_k up to the factor 1/2, which cancels
+        self.C: list[Gauss] = [(potential.cos[i], -potential.sin[i]) for i in place]
+        self.symbolic = potential.is_symbolic
+        self.exponents = support.lattice.coordinates(support.coordinates)
+
+    def holds(self, Y: NDArray[np.int64], s: NDArray[np.int64], d_sat: NDArray[np.float64]) -> bool:
+        """Say whether an exact offset exists that rounds to ``d_sat``."""
+        if not self.complete:
+            return False
+        position, image = self.support.image(Y, s)
+        ratio = image * s / self.support.C
+        targets = []
+        for i, j in enumerate(position.tolist()):
+            c, sine = self.C[j]
+            # image[i] is C_j or its conjugate: recover which from the frequencies
+            conjugate = not np.array_equal(self.support.K[j], s[i] * Y * self.support.K[i])
+            targets.append((int(s[i]) * c, int(s[i]) * (-sine if conjugate else sine)))
+        quarter = np.round(np.angle(ratio) / (np.pi / 2)).astype(np.int64) % 4
+        units = all(
+            _equal(t, _times(UNITS[p], c))
+            for t, p, c in zip(targets, quarter.tolist(), self.C, strict=True)
+        )
+        lattice = self.support.lattice
+        if units:  # all u_k are powers of i: the relations are congruences modulo 4
+            w = lattice.T @ quarter[list(lattice.rows)]
+            if np.any((self.exponents @ w - quarter) % 4):
+                return False
+        elif self.symbolic or not self._products_agree(targets):
+            return False
+        # the exact offsets are those of one coset each: the float d_sat must be one of them
+        misfit = np.angle(np.exp(1j * (self.support.coordinates @ d_sat)) / ratio)
+        return bool(np.all(np.abs(misfit) < 1e-9))
+
+    def _products_agree(self, targets: list[Gauss]) -> bool:
+        u = [_divide(t, c) for t, c in zip(targets, self.C, strict=True)]
+        if any(x * x + y * y != 1 for x, y in u):
+            return False
+        lattice = self.support.lattice
+        generators = [u[i] for i in lattice.rows]
+        w = [_product(generators, row) for row in lattice.T.tolist()]
+        return all(_product(w, row) == v for row, v in zip(self.exponents.tolist(), u, strict=True))
+
+
+def _times(a: Gauss, b: Gauss) -> Gauss:
+    return (a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0])
+
+
+def _divide(a: Gauss, b: Gauss) -> Gauss:
+    size = b[0] * b[0] + b[1] * b[1]
+    real, imaginary = _times(a, (b[0], -b[1]))
+    return (real / size, imaginary / size)
+
+
+def _product(factors: list[Gauss], exponents: list[int]) -> Gauss:
+    """Return the product of unit Gaussian rationals to integer powers (inverse = conjugate)."""
+    total: Gauss = (fmpq(1), fmpq(0))
+    for (x, y), exponent in zip(factors, exponents, strict=True):
+        base = (x, y) if exponent >= 0 else (x, -y)
+        for _ in range(abs(exponent)):
+            total = _times(total, base)
+    return total
+
+
+def _equal(a: Gauss, b: Gauss) -> bool:
+    if isinstance(a[0], sympy.Basic) or isinstance(b[0], sympy.Basic):
+        return is_zero(sympy.sympify(a[0] - b[0])) and is_zero(sympy.sympify(a[1] - b[1]))
+    return bool(a[0] == b[0] and a[1] == b[1])
