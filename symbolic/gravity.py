@@ -152,7 +152,7 @@ class GravityModel:
         InputError
             For a wrong shape, or if the model contains symbols.
         """
-        return self._chain.torque(self._points(q))
+        return self._chain.torque(q)
 
     def stiffness(self, q: ArrayLike) -> Floats:
         """Return dg/dq [N m/rad], symmetric, of shape (..., n, n), at ``q`` (..., n) [rad].
@@ -162,17 +162,11 @@ class GravityModel:
         InputError
             For a wrong shape, or if the model contains symbols.
         """
-        return self._chain.stiffness(self._points(q))
+        return self._chain.stiffness(q)
 
     @cached_property
     def _chain(self) -> GravityChain:
         return GravityChain.of(self.tree)
-
-    def _points(self, q: ArrayLike) -> Floats:
-        points = np.asarray(q, dtype=np.float64)
-        if points.shape[-1:] != (self.n,):
-            raise InputError("configuration", "shape", points.shape, f"(..., {self.n})")
-        return points
 
     def _check(self, robot: Robot) -> float:
         """Compare both forms with Pinocchio; return the largest difference [N m]."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -98,26 +99,46 @@ class GravityChain:
         return len(self.parents)
 
     def torque(self, q: ArrayLike) -> Floats:
-        """Return the gravity torque at ``q`` (..., n) [rad], of shape (..., n) [N m]."""
-        points = np.ascontiguousarray(q, dtype=np.float64)
+        """Return the gravity torque at ``q`` (..., n) [rad], of shape (..., n) [N m].
+
+        Raises
+        ------
+        InputError
+            If the last axis of ``q`` does not hold n angles.
+        """
+        points = self._points(q)
         torques = np.empty(points.shape)
-        if points.ndim == 1:
-            _torque(*self._arrays, points[None], torques[None])
-        else:
-            _torque(*self._arrays, points.reshape(-1, self.n), torques.reshape(-1, self.n))
+        _torque(self.parents, self._table, points.ravel(), torques.ravel())
         return torques
 
     def stiffness(self, q: ArrayLike) -> Floats:
-        """Return dg/dq at ``q`` (..., n) [rad], of shape (..., n, n) [N m/rad]."""
-        points = np.ascontiguousarray(q, dtype=np.float64)
-        n = self.n
-        out = np.zeros((*points.shape, n))
-        _stiffness(*self._arrays, points.reshape(-1, n), out.reshape(-1, n, n))
-        return out
+        """Return dg/dq at ``q`` (..., n) [rad], of shape (..., n, n) [N m/rad].
 
-    @property
-    def _arrays(self) -> tuple[NDArray[np.int64], Floats, Floats, Floats]:
-        return self.parents, self.rotations, self.moments, self.gravity
+        Raises
+        ------
+        InputError
+            If the last axis of ``q`` does not hold n angles.
+        """
+        points = self._points(q)
+        matrices = np.zeros((*points.shape, self.n))
+        _stiffness(self.parents, self._table, points.ravel(), matrices.reshape(-1, self.n, self.n))
+        return matrices
+
+    def _points(self, q: ArrayLike) -> Floats:
+        # Always a copy: compiled code is specialised to writable arrays in C order.
+        points = np.array(q, dtype=np.float64, order="C")
+        if points.shape[-1:] != (self.n,):
+            raise InputError("configuration", "shape", points.shape, f"(..., {self.n})")
+        return points
+
+    @cached_property
+    def _table(self) -> Floats:
+        """Return one row per joint, rotation by rows and moment, and gravity in the last row."""
+        table = np.zeros((self.n + 1, 12))
+        table[:-1, :9] = self.rotations.reshape(-1, 9)
+        table[:-1, 9:] = self.moments
+        table[-1, :3] = self.gravity
+        return table
 
 
 def _numbers(values: NDArray, field: str) -> Floats:
@@ -143,80 +164,73 @@ def _frame_with_axis(z: Floats) -> Floats:
     return np.column_stack([x, np.cross(z, x), z]) + 0.0  # no negative zeros
 
 
-@njit(cache=True)
-def _passes(parents, rotations, moments, gravity, q, cos, sin, before, after, carried, turned):
-    """Fill, for one configuration, gravity before/after each joint and the moments it carries."""
+# Columns of the scratch array that the compiled functions share, one row per joint (and the base):
+# 0 cos, 1 sin; gravity 2-3 before and 4-6 after the joint's rotation; the moment that the joint
+# carries, 7-9 after and 10-11 before its rotation. The z parts before and after are equal.
+
+
+@njit(cache=True, inline="always")  # halves the time of short arms
+def _passes(parents, table, q, start, work):
+    """Fill ``work`` for the configuration that begins at ``q[start]``."""
     n = len(parents)
+    for j in range(3):
+        work[n, 4 + j] = table[n, j]
     for i in range(n):
-        cos[i], sin[i] = np.cos(q[i]), np.sin(q[i])
-        seen = gravity if parents[i] < 0 else after[parents[i]]
-        for j in range(3):
-            before[i, j] = (
-                rotations[i, 0, j] * seen[0]
-                + rotations[i, 1, j] * seen[1]
-                + rotations[i, 2, j] * seen[2]
-            )
-            carried[i, j] = moments[i, j]
-        after[i, 0] = cos[i] * before[i, 0] + sin[i] * before[i, 1]
-        after[i, 1] = cos[i] * before[i, 1] - sin[i] * before[i, 0]
-        after[i, 2] = before[i, 2]
+        p = parents[i] if parents[i] >= 0 else n
+        cos, sin = np.cos(q[start + i]), np.sin(q[start + i])
+        a, b, c = work[p, 4], work[p, 5], work[p, 6]
+        x = table[i, 0] * a + table[i, 3] * b + table[i, 6] * c
+        y = table[i, 1] * a + table[i, 4] * b + table[i, 7] * c
+        work[i, 0], work[i, 1] = cos, sin
+        work[i, 2], work[i, 3] = x, y
+        work[i, 4], work[i, 5] = cos * x + sin * y, cos * y - sin * x
+        work[i, 6] = table[i, 2] * a + table[i, 5] * b + table[i, 8] * c
+        work[i, 7], work[i, 8], work[i, 9] = table[i, 9], table[i, 10], table[i, 11]
     for i in range(n - 1, -1, -1):
-        turned[i, 0] = cos[i] * carried[i, 0] - sin[i] * carried[i, 1]
-        turned[i, 1] = sin[i] * carried[i, 0] + cos[i] * carried[i, 1]
-        if parents[i] >= 0:
-            for j in range(3):
-                carried[parents[i], j] += (
-                    rotations[i, j, 0] * turned[i, 0]
-                    + rotations[i, j, 1] * turned[i, 1]
-                    + rotations[i, j, 2] * carried[i, 2]
-                )
+        p = parents[i]
+        cos, sin = work[i, 0], work[i, 1]
+        x = cos * work[i, 7] - sin * work[i, 8]
+        y = sin * work[i, 7] + cos * work[i, 8]
+        z = work[i, 9]
+        work[i, 10], work[i, 11] = x, y
+        if p >= 0:
+            work[p, 7] += table[i, 0] * x + table[i, 1] * y + table[i, 2] * z
+            work[p, 8] += table[i, 3] * x + table[i, 4] * y + table[i, 5] * z
+            work[p, 9] += table[i, 6] * x + table[i, 7] * y + table[i, 8] * z
 
 
 @njit(cache=True)
-def _torque(parents, rotations, moments, gravity, q, out):
+def _torque(parents, table, q, out):
     n = len(parents)
-    cos, sin = np.empty(n), np.empty(n)
-    before, after = np.empty((n, 3)), np.empty((n, 3))
-    carried, turned = np.empty((n, 3)), np.empty((n, 2))
-    for b in range(len(q)):
-        _passes(
-            parents, rotations, moments, gravity, q[b],
-            cos, sin, before, after, carried, turned,
-        )  # fmt: skip
+    work = np.empty((n + 1, 12))
+    for start in range(0, len(q), n):
+        _passes(parents, table, q, start, work)
         for i in range(n):
-            out[b, i] = turned[i, 1] * before[i, 0] - turned[i, 0] * before[i, 1]
+            out[start + i] = work[i, 11] * work[i, 2] - work[i, 10] * work[i, 3]
 
 
 @njit(cache=True)
-def _stiffness(parents, rotations, moments, gravity, q, out):
+def _stiffness(parents, table, q, out):
     n = len(parents)
-    cos, sin = np.empty(n), np.empty(n)
-    before, after = np.empty((n, 3)), np.empty((n, 3))
-    carried, turned = np.empty((n, 3)), np.empty((n, 2))
-    push, seen = np.empty((n, 3)), np.empty(3)
-    for b in range(len(q)):
-        _passes(
-            parents, rotations, moments, gravity, q[b],
-            cos, sin, before, after, carried, turned,
-        )  # fmt: skip
+    work = np.empty((n + 1, 12))
+    push = np.empty((n, 3))  # v x z of joint i, seen from each joint that it carries
+    above = np.empty(n, dtype=np.bool_)
+    for b in range(len(out)):
+        _passes(parents, table, q, b * n, work)
         for i in range(n):
-            push[i, 0], push[i, 1], push[i, 2] = after[i, 1], -after[i, 0], 0.0
-            out[b, i, i] = push[i, 0] * carried[i, 1] - push[i, 1] * carried[i, 0]
-            above = np.zeros(n, dtype=np.bool_)
+            above[:] = False
             above[i] = True
+            push[i, 0], push[i, 1], push[i, 2] = work[i, 5], -work[i, 4], 0.0
+            out[b, i, i] = push[i, 0] * work[i, 8] - push[i, 1] * work[i, 7]
             for j in range(i + 1, n):
                 p = parents[j]
                 if p < 0 or not above[p]:
                     continue
                 above[j] = True
-                for a in range(3):
-                    seen[a] = (
-                        rotations[j, 0, a] * push[p, 0]
-                        + rotations[j, 1, a] * push[p, 1]
-                        + rotations[j, 2, a] * push[p, 2]
-                    )
-                push[j, 0] = cos[j] * seen[0] + sin[j] * seen[1]
-                push[j, 1] = cos[j] * seen[1] - sin[j] * seen[0]
-                push[j, 2] = seen[2]
-                out[b, i, j] = push[j, 0] * carried[j, 1] - push[j, 1] * carried[j, 0]
-                out[b, j, i] = out[b, i, j]
+                u, v, w = push[p, 0], push[p, 1], push[p, 2]
+                x = table[j, 0] * u + table[j, 3] * v + table[j, 6] * w
+                y = table[j, 1] * u + table[j, 4] * v + table[j, 7] * w
+                push[j, 0] = work[j, 0] * x + work[j, 1] * y
+                push[j, 1] = work[j, 0] * y - work[j, 1] * x
+                push[j, 2] = table[j, 2] * u + table[j, 5] * v + table[j, 8] * w
+                out[b, i, j] = out[b, j, i] = push[j, 0] * work[j, 8] - push[j, 1] * work[j, 7]
