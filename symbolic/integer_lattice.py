@@ -159,7 +159,8 @@ class GeneratedLattice:
         """
         column_form = hermite(np.ascontiguousarray(self.H.T))
         ranges = [range(int(x)) for x in np.diag(column_form)]
-        return np.array(list(itertools.product(*ranges)), dtype=np.int64).reshape(-1, len(self.H))
+        shifts = list(itertools.product(*ranges))
+        return np.array(shifts, dtype=np.int64).reshape(len(shifts), len(self.H))
 
 
 def generate_lattice(C: IntMatrix) -> GeneratedLattice:
