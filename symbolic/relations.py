@@ -238,8 +238,8 @@ class SymmetryGroup(Sequence[SymmetryRelation]):
         self.A: Array = np.array([r.A for r in members])
         self.d: Array = np.array([r.d for r in members])
         rank = len(self.basis)
-        self.A_sat: Array = np.array([r.A_sat for r in members]).reshape(-1, rank, rank)
-        self.d_sat: Array = np.array([r.d_sat for r in members]).reshape(-1, rank)
+        self.A_sat: Array = np.array([r.A_sat for r in members]).reshape(len(members), rank, rank)
+        self.d_sat: Array = np.array([r.d_sat for r in members]).reshape(len(members), rank)
 
     def __len__(self) -> int:
         return len(self._relations)
