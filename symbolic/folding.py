@@ -1,0 +1,217 @@
+"""Folding points into a Dirichlet cell: the representative of an orbit and the way there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symbolic.dirichlet_cell import TURN, DirichletCell
+from symbolic.errors import InputError
+from symbolic.integer_lattice import integer_inverse
+from symbolic.lattice_points import Floats, Integers
+
+ON_FACET = 1e-9
+"""Points within this of a facet [rad] count as on it."""
+SAME_COORDINATE = 1e-7
+"""Representatives on the boundary whose coordinates differ by less [rad] are compared further."""
+SAME_OFFSET = 1e-2
+"""Offsets of a product and of the listed relation may differ by this [rad] (learned relations)."""
+
+
+@dataclass(frozen=True, eq=False)
+class FoldedPoints:
+    """Representatives of m points in a fundamental domain.
+
+    Attributes
+    ----------
+    y : (m, r) array
+        The representatives, ``A[element] y + d[element] + 2 pi turns`` [rad].
+    element : (m,) int array
+        Which relation of the group leads there.
+    turns : (m, r) int array
+        Full turns added.
+    closed : (m,) bool array
+        Whether the point itself, up to full turns, lies in the closed cell.
+    """
+
+    y: Floats
+    element: Integers
+    turns: Integers
+    closed: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class _Crossings:
+    """The maps that carry the neighbour cell beyond facet f onto the cell, as a lookup table.
+
+    After relation g and ``turns``, crossing facet f gives relation ``element[f, g]`` and turns
+    ``linear[f] turns + turns[f, g]``.
+    """
+
+    element: Integers  # (f, G)
+    turns: Integers  # (f, G, r)
+    linear: Integers  # (f, r, r)
+
+
+class Folder:
+    """Folds points of R^r into the Dirichlet cell of a group modulo 2 pi.
+
+    Parameters
+    ----------
+    cell
+        The cell.
+    A, d : (G, r, r) and (G, r) arrays
+        The group it belongs to.
+
+    Raises
+    ------
+    InputError
+        If the relations are not closed under composition.
+
+    Notes
+    -----
+    A point is first brought near the centre by full turns (Babai rounding). While it lies beyond
+    facets, the one that brings it nearest to the centre is crossed backwards; every crossing
+    lowers the distance to the centre, so this ends, inside the cell. Relations and turns are
+    tracked in integers and applied once to the original point: no rounding errors pile up.
+    """
+
+    def __init__(self, cell: DirichletCell, A: NDArray[np.number], d: Floats) -> None:
+        self._cell = cell
+        self._A = np.round(np.asarray(A)).astype(float)
+        self._d = np.asarray(d, dtype=float)
+        linear = self._A.astype(np.int64)
+        self._identity = _find(linear, self._d, np.eye(linear.shape[1], dtype=np.int64), 0 * d[0])
+        self._crossings = _crossing_table(cell, linear, self._d)
+        self._to_basis = np.linalg.inv(cell.basis.astype(float)) / TURN
+        self._facet_length = np.sqrt(np.einsum("fi,fi->f", cell.normals, cell.normals))
+
+    def fold(self, y: Floats) -> FoldedPoints:
+        """Fold the points ``y`` (m, r)."""
+        m, r = y.shape
+        element = np.full(m, self._identity)
+        turns = -np.rint((y - self._cell.center) @ self._to_basis).astype(np.int64)
+        turns = turns @ self._cell.basis
+        point = y + TURN * turns
+        if r == 0 or m == 0:
+            return FoldedPoints(point, element, turns, np.ones(m, dtype=bool))
+        excess = self._excess(point)
+        active = np.flatnonzero((excess > ON_FACET * self._facet_length).any(axis=1))
+        while len(active):
+            facet = np.argmax(excess[active], axis=1)
+            new_element, new_turns = self._cross(facet, element[active], turns[active])
+            new_point = self._apply(y[active], new_element, new_turns)
+            # offsets of learned relations may fit together only nearly: never go round in circles
+            nearer = self._distance(new_point) < self._distance(point[active])
+            active = active[nearer]
+            element[active], turns[active] = new_element[nearer], new_turns[nearer]
+            point[active] = new_point[nearer]
+            excess[active] = self._excess(point[active])
+            beyond = excess[active] > ON_FACET * self._facet_length
+            active = active[beyond.any(axis=1)]
+        closed = element == self._identity
+        edge = np.flatnonzero((np.abs(excess) <= ON_FACET * self._facet_length).any(axis=1))
+        if len(edge):
+            element[edge], turns[edge], closed[edge] = self._on_boundary(
+                y[edge], element[edge], turns[edge]
+            )
+            point[edge] = self._apply(y[edge], element[edge], turns[edge])
+        return FoldedPoints(point, element, turns, closed)
+
+    def _excess(self, point: Floats) -> Floats:
+        return np.asarray(point @ self._cell.normals.T - self._cell.offsets)
+
+    def _distance(self, point: Floats) -> Floats:
+        away = point - self._cell.center
+        return np.einsum("mi,ij,mj->m", away, self._cell.metric, away)
+
+    def _apply(self, y: Floats, element: Integers, turns: Integers) -> Floats:
+        still = element == self._identity
+        moved = np.einsum("mij,mj->mi", self._A[element], y) + self._d[element]
+        return np.where(still[:, None], y, moved) + TURN * turns
+
+    def _cross(
+        self, facet: Integers, element: Integers, turns: Integers
+    ) -> tuple[Integers, Integers]:
+        table = self._crossings
+        onward = np.einsum("mij,mj->mi", table.linear[facet], turns)
+        return table.element[facet, element], onward + table.turns[facet, element]
+
+    def _on_boundary(
+        self, y: Floats, element: Integers, turns: Integers
+    ) -> tuple[Integers, Integers, NDArray[np.bool_]]:
+        """Choose one of the equivalent boundary points: the last in lexicographic order.
+
+        All members of the orbit in the closed cell are reached by crossing facets that the point
+        lies on (the cells around a point hang together by facets).
+        """
+        owner = np.arange(len(y))
+        ways = np.column_stack([owner, element, turns])
+        points = self._apply(y, element, turns)
+        fresh, fresh_points = ways, points
+        while len(fresh):
+            touching = np.abs(self._excess(fresh_points)) <= 2 * ON_FACET * self._facet_length
+            row, facet = np.nonzero(touching)
+            new_element, new_turns = self._cross(facet, fresh[row, 1], fresh[row, 2:])
+            reached = np.unique(np.column_stack([fresh[row, 0], new_element, new_turns]), axis=0)
+            fresh = _rows_not_in(reached, ways)
+            fresh_points = self._apply(y[fresh[:, 0]], fresh[:, 1], fresh[:, 2:])
+            inside = (self._excess(fresh_points) <= 2 * ON_FACET * self._facet_length).all(axis=1)
+            fresh, fresh_points = fresh[inside], fresh_points[inside]
+            ways = np.concatenate([ways, fresh])
+            points = np.concatenate([points, fresh_points])
+        closed = np.zeros(len(y), dtype=bool)
+        closed[ways[ways[:, 1] == self._identity, 0]] = True
+        # the identity first, so that a representative is its own representative
+        rank = np.lexsort((ways[:, 1] != self._identity, ways[:, 0]))
+        ways, points = ways[rank], points[rank]
+        for coordinate in range(y.shape[1]):
+            best = np.full(len(y), -np.inf)
+            np.maximum.at(best, ways[:, 0], points[:, coordinate])
+            keep = points[:, coordinate] >= best[ways[:, 0]] - SAME_COORDINATE
+            ways, points = ways[keep], points[keep]
+        first = np.searchsorted(ways[:, 0], owner)
+        return ways[first, 1], ways[first, 2:], closed
+
+
+def _rows_not_in(rows: Integers, known: Integers) -> Integers:
+    """Return those of the distinct ``rows`` that are not rows of ``known``."""
+    both = np.concatenate([known, rows])
+    _, number = np.unique(both, axis=0, return_inverse=True)
+    return rows[~np.isin(number[len(known) :], number[: len(known)])]
+
+
+def _find(linear: Integers, d: Floats, wanted_linear: Integers, wanted_d: Floats) -> int:
+    """Return the index of the relation with the given linear part and offset modulo 2 pi."""
+    same = np.flatnonzero((linear == wanted_linear).all(axis=(1, 2)))
+    if len(same):
+        miss = np.abs(np.remainder(d[same] - wanted_d + np.pi, TURN) - np.pi)
+        worst = miss.max(axis=1, initial=0.0)
+        best = int(np.argmin(worst))
+        if worst[best] < SAME_OFFSET:
+            return int(same[best])
+    raise InputError(
+        "fundamental domain",
+        "product of relations",
+        f"A_sat = {wanted_linear.tolist()}, d_sat = {np.round(wanted_d, 6).tolist()}, not listed",
+        "relations closed under composition and inverse",
+    )
+
+
+def _crossing_table(cell: DirichletCell, linear: Integers, d: Floats) -> _Crossings:
+    """Tabulate the inverse of each facet's map, composed with every relation of the group."""
+    facets, (order, r) = len(cell.element), d.shape
+    element = np.zeros((facets, order), dtype=np.int64)
+    turns = np.zeros((facets, order, r), dtype=np.int64)
+    back = np.zeros((facets, r, r), dtype=np.int64)
+    for f, (g, z) in enumerate(zip(cell.element, cell.turns, strict=True)):
+        back[f] = integer_inverse(linear[g])
+        shift = -back[f] @ (d[g] + TURN * z)
+        products = np.einsum("ij,gjk->gik", back[f], linear)
+        offsets = d @ back[f].T + shift
+        for h in range(order):
+            element[f, h] = _find(linear, d, products[h], offsets[h])
+        turns[f] = np.rint((offsets - d[element[f]]) / TURN).astype(np.int64)
+    return _Crossings(element, turns, back)
