@@ -19,6 +19,7 @@ _BOUNDED = frozenset({"JointModelRX", "JointModelRY", "JointModelRZ", "JointMode
 _CONTINUOUS = frozenset(
     {"JointModelRUBX", "JointModelRUBY", "JointModelRUBZ", "JointModelRevoluteUnboundedUnaligned"}
 )
+_LARGEST = 1e100  # Nm; squares of it still fit into a double
 _NO_LIMIT = 1e6  # rad; Pinocchio writes the largest double where a joint has no limit
 
 
@@ -192,6 +193,62 @@ class ArmBody:
         return sha.hexdigest()
 
 
+def check_body(body: ArmBody, where: str) -> None:
+    """Refuse an arm with numbers that no arm has.
+
+    Parameters
+    ----------
+    body
+        The arm.
+    where
+        What to call it in an error.
+
+    Raises
+    ------
+    InputError
+        For numbers that are not finite, negative masses or damping, placements that are not
+        rotations, and inverted limits; naming the joint.
+    """
+    for field, accepted in (
+        ("masses", "finite masses [kg]"),
+        ("levers", "finite centres of mass [m]"),
+        ("inertias", "finite inertias [kg m^2]"),
+        ("translations", "finite positions [m]"),
+        ("rotations", "rotation matrices"),
+        ("axes", "unit axes"),
+        ("limits", "finite limits [rad]"),
+        ("damping", "finite damping [N m s/rad]"),
+    ):
+        for name, values in zip(body.joint_names, getattr(body, field), strict=True):
+            if not np.all(np.isfinite(values)):
+                raise InputError(where, f"{field} of joint '{name}'", values, accepted)
+    if not np.all(np.isfinite(body.gravity)):
+        raise InputError(where, "gravity", body.gravity, "a finite acceleration [m/s^2]")
+    reach = np.abs(body.translations).sum() + np.abs(body.levers).sum()
+    weight = np.abs(body.masses).sum() * np.linalg.norm(body.gravity)
+    if not reach * weight < _LARGEST:
+        raise InputError(
+            where, "largest gravity torque", f"{reach * weight} Nm", f"less than {_LARGEST:g} Nm"
+        )
+    for i, name in enumerate(body.joint_names):
+        if body.masses[i] < 0:
+            raise InputError(
+                where, f"mass of joint '{name}'", body.masses[i], "a number >= 0 [kg]"
+            )
+        if body.damping[i] < 0:
+            raise InputError(where, f"damping of joint '{name}'", body.damping[i], "a number >= 0")
+        lower, upper = body.limits[i]
+        if not lower < upper:
+            raise InputError(
+                where, f"limits of joint '{name}'", f"[{lower}, {upper}]", "lower < upper [rad]"
+            )
+        rotation = body.rotations[i]
+        if abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0:
+            raise InputError(
+                where, f"placement of joint '{name}'", rotation.tolist(), "a rotation matrix"
+            )
+
+
 def _axis(model: pin.Model, joint: int) -> Array:
     """Return the axis of a revolute joint, read from its motion subspace."""
     kind = model.joints[joint]
@@ -202,7 +259,8 @@ def _axis(model: pin.Model, joint: int) -> Array:
 
 def _joint_model(axis: Array) -> pin.JointModel:
     """Return the revolute joint about an axis."""
-    for unit, kind in zip(np.eye(3), (pin.JointModelRX, pin.JointModelRY, pin.JointModelRZ), strict=True):
+    coordinate = (pin.JointModelRX, pin.JointModelRY, pin.JointModelRZ)
+    for unit, kind in zip(np.eye(3), coordinate, strict=True):
         if np.array_equal(axis, unit):
             return kind()
     return pin.JointModelRevoluteUnaligned(axis)

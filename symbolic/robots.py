@@ -5,32 +5,70 @@ from __future__ import annotations
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from symbolic.arm_body import ArmBody
+from symbolic.arm_body import ArmBody, check_body
 from symbolic.errors import InputError
 from symbolic.kinematic_tree import KinematicTree
+from symbolic.snap_effect import torque_difference_bound
+from symbolic.snapped_bodies import snap_body, snap_urdf
+from symbolic.snapping import Snap
+from symbolic.urdf import Urdf, parse_urdf, urdf_text
+from symbolic.urdf_elements import MOVING
 
 Array = NDArray[np.float64]
 
+_BUILTIN = {
+    "2r": "the paper's planar arm: two uniform rods of 5 kg, 0.25 m, gravity in the plane",
+    "3r": "the paper's simplified human arm: 5 kg in the hand, 0.25 m links",
+    "pendulum": "one uniform rod of 5 kg, 0.25 m on a horizontal axis",
+    "4r-planar": "four uniform rods of 2 kg, 0.25 m with parallel horizontal axes",
+    "ur5": "Universal Robots UR5, idealised inertias of ROS's ur_description",
+    "panda": "Franka Emika Panda without hand, inertias identified by Gaz et al. 2019",
+}
 
-@dataclass(frozen=True, eq=False)
-class Snap:
-    """An angle or axis that was snapped."""
 
-    joint: str
-    what: str
-    before: tuple[float, ...]
-    after: tuple[float, ...]
-    effect: Array
+class BuiltinRobot(NamedTuple):
+    """A robot that `load_robot` knows by name: name, number of joints, description."""
+
+    name: str
+    joints: int
+    description: str
 
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """A robot arm with one angle per joint."""
+    """A robot arm with one angle per joint.
+
+    Attributes
+    ----------
+    name : str
+        The built-in name, the name in the file, or that of the file or model.
+    model : pin.Model
+        The arm that the toolkit works with: snapped, nq = nv = n, joints in Pinocchio's order.
+    source_model : pin.Model
+        As Pinocchio reads the file, or the user's model itself: not snapped; a continuous joint
+        has two entries (cos, sin) in its configuration vector.
+    joint_names : tuple of str
+        One name per joint.
+    limits : (n, 2) array
+        Lower and upper joint limits [rad]; -pi, pi where the file has none.
+    damping : (n,) array
+        Viscous damping of the joints [N m s/rad], 0 where the file has none.
+    snaps : tuple of Snap
+        What was snapped, in the order of the file.
+    snap_bound : (n,) array
+        Bound on ``|g_i(model) - g_i(source_model)|`` over all configurations [N m]; 0 where
+        nothing was snapped (rounding of relative size 1e-12 apart).
+    tree : KinematicTree
+        What gravity sees of ``model``, in floats.
+    digest : str
+        Fingerprint of ``model`` (sha256, hex): the same in each run and on each machine.
+    """
 
     name: str
     model: pin.Model
@@ -49,35 +87,102 @@ class Robot:
         return len(self.joint_names)
 
     def source_configuration(self, q: ArrayLike) -> Array:
-        """Return the configuration vector of ``source_model`` for joint angles q (..., n)."""
+        """Return the configuration vector of ``source_model`` for given joint angles.
+
+        Parameters
+        ----------
+        q : (..., n) array
+            Joint angles [rad].
+
+        Returns
+        -------
+        (..., nq) array
+            The angles themselves, cosine and sine for each continuous joint.
+        """
         q = np.asarray(q, dtype=float)
+        if q.ndim == 0 or q.shape[-1] != self.n:
+            raise InputError(self.name, "shape of joint angles", q.shape, f"(..., {self.n})")
         out = np.empty((*q.shape[:-1], self.source_model.nq))
-        for i, joint in enumerate(list(self.source_model.joints)[1:]):
+        for angle, joint in zip(np.moveaxis(q, -1, 0), self.source_model.joints[1:], strict=True):
             if joint.nq == 2:
-                out[..., joint.idx_q] = np.cos(q[..., i])
-                out[..., joint.idx_q + 1] = np.sin(q[..., i])
+                out[..., joint.idx_q] = np.cos(angle)
+                out[..., joint.idx_q + 1] = np.sin(angle)
             else:
-                out[..., joint.idx_q] = q[..., i]
+                out[..., joint.idx_q] = angle
         return out
 
 
-_BUILTIN = ("2r", "3r", "pendulum", "4r-planar")
+def builtin_robots() -> tuple[BuiltinRobot, ...]:
+    """Return name, number of joints and description of each built-in robot.
+
+    Examples
+    --------
+    >>> for robot in builtin_robots():
+    ...     print(robot.name, robot.joints)
+    2r 2
+    3r 3
+    pendulum 1
+    4r-planar 4
+    ur5 6
+    panda 7
+    """
+    return tuple(
+        BuiltinRobot(name, _moving_joints(parse_urdf(_builtin_file(name), name)), description)
+        for name, description in _BUILTIN.items()
+    )
 
 
 def load_robot(spec: str | Path | pin.Model, *, snap: bool = True) -> Robot:
-    """Load a robot: built-in name, URDF file or Pinocchio model."""
+    """Load a robot arm.
+
+    Parameters
+    ----------
+    spec
+        A built-in name (`builtin_robots`), the path of a URDF file, or a Pinocchio model.
+    snap
+        Set angles within 1e-5 rad of a multiple of pi/2 (and axes within that of a coordinate
+        axis) to exactly that; each such change is listed in ``snaps`` and bounded in
+        ``snap_bound``. With False the arm is taken as Pinocchio reads it.
+
+    Returns
+    -------
+    Robot
+
+    Raises
+    ------
+    InputError
+        For a file that is missing or not a URDF, joints that are not revolute, mimic joints, no
+        moving joint, negative masses, numbers that are not finite, links that do not form a
+        tree, inverted limits. The message names file, joint or link, and what is accepted.
+
+    Notes
+    -----
+    Links fixed to each other count as one body, so tools beyond the last joint are kept. A link
+    without mass is legal. Joints are ordered as in Pinocchio. Joint angles are radians.
+
+    Examples
+    --------
+    >>> robot = load_robot("2r")
+    >>> robot.n, robot.joint_names, robot.snaps
+    (2, ('shoulder', 'elbow'), ())
+    >>> robot.tree.masses
+    array([5., 5.])
+    """
+    snaps: tuple[Snap, ...] = ()
     if isinstance(spec, pin.Model):
-        source, name = spec, spec.name
+        source, name = spec, spec.name or "model"
+        body = as_read = _checked_body(source, name)
+        if snap:
+            body, snaps = snap_body(as_read)
     else:
-        name = str(spec)
-        if name in _BUILTIN:
-            text = files("symbolic").joinpath("robot_files", f"{name}.urdf").read_text()
-        elif Path(spec).is_file():
-            text = Path(spec).read_text()
-        else:
-            raise InputError(name, "robot", "unknown", f"{', '.join(_BUILTIN)} or a URDF file")
-        source = pin.buildModelFromXML(text)
-    body = ArmBody.from_model(source, name)
+        name, where, data = _read(spec)
+        urdf = parse_urdf(data, where)
+        name = name or urdf.name or Path(spec).stem
+        source = _pinocchio_model(urdf, where)
+        body = as_read = _checked_body(source, where)
+        if snap:
+            body, snaps = snap_urdf(urdf, as_read.joint_names)
+    bound = torque_difference_bound(as_read.tree(), body.tree()) if snaps else np.zeros(body.n)
     return Robot(
         name=name,
         model=body.to_model(name),
@@ -85,8 +190,54 @@ def load_robot(spec: str | Path | pin.Model, *, snap: bool = True) -> Robot:
         joint_names=body.joint_names,
         limits=body.limits,
         damping=body.damping,
-        snaps=(),
-        snap_bound=np.zeros(body.n),
+        snaps=snaps,
+        snap_bound=bound,
         tree=body.tree(),
         digest=body.digest(),
     )
+
+
+def _checked_body(model: pin.Model, where: str) -> ArmBody:
+    body = ArmBody.from_model(model, where)
+    check_body(body, where)
+    return body
+
+
+def _read(spec: str | Path) -> tuple[str, str, bytes]:
+    """Return built-in name (or nothing), what to call the file in errors, and its contents."""
+    if not isinstance(spec, str | Path):
+        accepted = "a built-in name, the path of a URDF file or a pinocchio.Model"
+        raise InputError("robot", "type", type(spec).__name__, accepted)
+    where = str(spec)
+    if where in _BUILTIN:
+        return where, where, _builtin_file(where)
+    path = Path(spec)
+    accepted = f"a URDF file or one of {', '.join(_BUILTIN)}"
+    try:
+        if not path.exists():
+            raise InputError(where or "robot", "file", repr(where) + " (not found)", accepted)
+        if not (path.is_file() or path.is_fifo()):
+            raise InputError(where or "robot", "file", "a folder or a device", accepted)
+        return "", where, path.read_bytes()
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(where, "file", f"not readable ({reason})", accepted) from None
+
+
+def _builtin_file(name: str) -> bytes:
+    return files("symbolic").joinpath("robot_files", f"{name}.urdf").read_bytes()
+
+
+def _moving_joints(urdf: Urdf) -> int:
+    return sum(joint.kind in MOVING for joint in urdf.joints)
+
+
+def _pinocchio_model(urdf: Urdf, where: str) -> pin.Model:
+    """Let Pinocchio read the description; what it refuses is bad input."""
+    try:
+        return pin.buildModelFromXML(urdf_text(urdf))
+    except Exception as error:  # Boost.Python maps C++ exceptions to several types
+        accepted = "a URDF that Pinocchio reads"
+        raise InputError(where, "content", f"refused by Pinocchio ({error})", accepted) from None

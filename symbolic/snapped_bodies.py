@@ -1,0 +1,132 @@
+"""Arms snapped: each orientation and axis in turn, with the effect that it has on gravity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symbolic.arm_body import ArmBody
+from symbolic.snap_effect import torque_difference_bound
+from symbolic.snapping import (
+    Snap,
+    Triple,
+    clean_lengths,
+    differs,
+    snap_angles,
+    snap_axis,
+    snap_rotation,
+    unit_axis,
+)
+from symbolic.urdf import Urdf
+from symbolic.urdf_body import body_from_urdf
+
+Array = NDArray[np.float64]
+
+
+def snap_urdf(urdf: Urdf, joint_names: Sequence[str]) -> tuple[ArmBody, tuple[Snap, ...]]:
+    """Return the arm that a URDF describes with its rounded angles snapped.
+
+    Parameters
+    ----------
+    urdf
+        The description.
+    joint_names
+        The moving joints in Pinocchio's order.
+
+    Returns
+    -------
+    tuple
+        The arm, and what was snapped in the order of the file.
+
+    Notes
+    -----
+    Angles are snapped where they are written (fixed joints and inertial frames too), then links
+    are merged, then the placements of the joints that result are snapped: two fixed joints
+    turned by 0.785398 each make a right angle. Effects are those of one snap after the other,
+    so that their sum is no less than the whole.
+    """
+    snaps: list[Snap] = []
+    body = body_from_urdf(urdf, joint_names)
+    for i, joint in enumerate(urdf.joints):
+        rpy, axis = snap_angles(joint.rpy), snap_axis(joint.axis)
+        for what, before, after, changed in (
+            ("origin rpy", joint.rpy, rpy, {"rpy": rpy}),
+            ("axis", unit_axis(joint.axis), axis, {"axis": axis}),
+        ):
+            joint = replace(joint, **changed)
+            urdf = replace(urdf, joints=(*urdf.joints[:i], joint, *urdf.joints[i + 1 :]))
+            if differs(before, after):
+                body = _listed(
+                    snaps, joint.name, what, before, after, body, body_from_urdf(urdf, joint_names)
+                )
+    for i, link in enumerate(urdf.links):
+        rpy = snap_angles(link.rpy)
+        if differs(link.rpy, rpy):  # turns an inertia, which gravity does not see
+            nothing = np.zeros(body.n)
+            snaps.append(Snap(link.name, "inertial rpy", link.rpy, rpy, nothing))
+        link = replace(link, rpy=rpy)
+        urdf = replace(urdf, links=(*urdf.links[:i], link, *urdf.links[i + 1 :]))
+    body, more = snap_body(body_from_urdf(urdf, joint_names))
+    return body, (*snaps, *more)
+
+
+def snap_body(body: ArmBody) -> tuple[ArmBody, tuple[Snap, ...]]:
+    """Return an arm with the placements and axes of its joints snapped, rounding noise removed.
+
+    Parameters
+    ----------
+    body
+        Any arm.
+
+    Returns
+    -------
+    tuple
+        The arm, and what was snapped; noise of relative size 1e-12 is removed without mention.
+    """
+    snaps: list[Snap] = []
+    for i, name in enumerate(body.joint_names):
+        rotation, before, after = snap_rotation(body.rotations[i])
+        turned = replace(body, rotations=_with(body.rotations, i, rotation))
+        if differs(before, after):
+            turned = _listed(snaps, name, "placement rpy", before, after, body, turned)
+        old = unit_axis(_triple(body.axes[i]))
+        new = snap_axis(old)
+        body = replace(turned, axes=_with(body.axes, i, np.array(new)))
+        if differs(old, new):
+            body = _listed(snaps, name, "axis", old, new, turned, body)
+    size = float(max(np.abs(body.translations).max(), np.abs(body.levers).max()))
+    body = replace(
+        body,
+        translations=clean_lengths(body.translations, size),
+        levers=clean_lengths(body.levers, size),
+    )
+    return body, tuple(snaps)
+
+
+def _listed(
+    snaps: list[Snap],
+    name: str,
+    what: str,
+    before: Triple,
+    after: Triple,
+    old: ArmBody,
+    new: ArmBody,
+) -> ArmBody:
+    """Add a snap with its effect to the list; return the new arm."""
+    effect = torque_difference_bound(old.tree(), new.tree())
+    snaps.append(Snap(name, what, before, after, effect))
+    return new
+
+
+def _with(rows: Array, i: int, row: Array) -> Array:
+    changed = rows.copy()
+    changed[i] = row
+    return changed
+
+
+def _triple(values: Array) -> Triple:
+    x, y, z = map(float, values)
+    return x, y, z

@@ -1,0 +1,208 @@
+"""Snapping: angles that were rounded in a file are set back to multiples of pi/2.
+
+``rpy="1.5708 0 0"`` means a right angle; taken literally it makes tiny spurious coefficients in
+the gravity potential, and symmetries of the arm are lost. Angles within ``SNAP_ANGLE`` of a
+multiple of pi/2, and axes within it of a coordinate axis, are snapped; others never move.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Triple = tuple[float, float, float]
+
+SNAP_ANGLE = 1e-5
+"""Largest change of an angle by snapping [rad]."""
+
+ROUNDING = 1e-12
+"""Changes below this [rad, or relative to the arm's size] are rounding: made, but not listed."""
+
+_RIGHT = math.pi / 2
+
+
+@dataclass(frozen=True, eq=False)
+class Snap:
+    """An orientation or axis that was snapped when a robot was loaded.
+
+    Attributes
+    ----------
+    joint : str
+        Name of the joint (or link, for the orientation of an inertia).
+    what : str
+        What was snapped: ``origin rpy``, ``axis``, ``inertial rpy`` or ``placement rpy`` (that
+        of a joint relative to the joint before it).
+    before, after : tuple of 3 floats
+        Roll, pitch, yaw [rad], or the unit axis.
+    effect : (n,) array
+        Largest change of each joint's gravity torque by this snap, over all configurations [N m].
+    """
+
+    joint: str
+    what: str
+    before: Triple
+    after: Triple
+    effect: Array
+
+
+def snap_angle(angle: float) -> float:
+    """Return the multiple of pi/2 within 1e-5 of an angle [rad], or the angle itself.
+
+    Examples
+    --------
+    >>> snap_angle(1.5708), snap_angle(-3.1416), snap_angle(1.57)
+    (1.5707963267948966, -3.141592653589793, 1.57)
+    """
+    nearest = _quarter_turns(angle) * _RIGHT
+    return nearest if abs(angle - nearest) <= SNAP_ANGLE else angle
+
+
+def snap_angles(angles: Triple) -> Triple:
+    """Snap three angles [rad]."""
+    a, b, c = map(snap_angle, angles)
+    return a, b, c
+
+
+def snap_axis(axis: Triple) -> Triple:
+    """Return the coordinate axis within 1e-5 rad of a direction, or the unit axis itself.
+
+    Examples
+    --------
+    >>> snap_axis((0.0, -2.0, 1e-5))
+    (0.0, -1.0, 0.0)
+    """
+    unit = unit_axis(axis)
+    main = max(range(3), key=lambda i: abs(unit[i]))
+    off = math.hypot(*(unit[i] for i in range(3) if i != main))
+    if math.atan2(off, abs(unit[main])) > SNAP_ANGLE:
+        x, y, z = (0.0 if abs(value) < ROUNDING else value for value in unit)
+    else:
+        x, y, z = (math.copysign(1.0, unit[i]) if i == main else 0.0 for i in range(3))
+    return x, y, z
+
+
+def unit_axis(axis: Triple) -> Triple:
+    """Return the unit vector along a direction; one that is a unit vector already stays as it is.
+
+    Examples
+    --------
+    >>> unit_axis((0.0, 0.0, -2.0)), unit_axis((3e200, 4e200, 0.0))
+    ((0.0, 0.0, -1.0), (0.6, 0.8, 0.0))
+    """
+    largest = max(map(abs, axis))  # first to size one: no overflow
+    length = math.hypot(*(value / largest for value in axis)) * largest
+    if abs(length - 1.0) < 4e-16:
+        length = 1.0
+    x, y, z = (value / length + 0.0 for value in axis)
+    return x, y, z
+
+
+def rotation_from_rpy(rpy: Triple) -> Array:
+    """Return the rotation Rz(yaw) Ry(pitch) Rx(roll), exact for multiples of pi/2.
+
+    Parameters
+    ----------
+    rpy
+        Roll, pitch and yaw [rad], as in URDF.
+
+    Returns
+    -------
+    (3, 3) array
+
+    Examples
+    --------
+    >>> print(rotation_from_rpy((0.0, 0.0, snap_angle(1.5708))))
+    [[ 0. -1.  0.]
+     [ 1.  0.  0.]
+     [ 0.  0.  1.]]
+    """
+    (cr, sr), (cp, sp), (cy, sy) = map(_cos_sin, rpy)
+    roll = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]], dtype=float)
+    pitch = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]], dtype=float)
+    yaw = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]], dtype=float)
+    return multiply(yaw, pitch, roll)
+
+
+def multiply(*matrices: Array) -> Array:
+    """Return a product of small matrices, summed in a fixed order.
+
+    Notes
+    -----
+    A BLAS may sum differently from one machine to the next; here equal input gives equal bits.
+    """
+    product = matrices[0]
+    for m in matrices[1:]:
+        product = sum(np.multiply.outer(product[:, k], m[k]) for k in range(len(m)))
+    return product + 0.0  # -0 becomes 0
+
+
+def rpy_from_rotation(rotation: Array) -> Triple:
+    """Return roll, pitch, yaw [rad] of a rotation matrix.
+
+    Notes
+    -----
+    Where the pitch is within 1e-5 of +-pi/2 only yaw -+ roll matters: roll is given as 0.
+    """
+    level = math.hypot(rotation[0, 0], rotation[1, 0])  # cos(pitch)
+    pitch = math.atan2(-rotation[2, 0], level)
+    if level <= SNAP_ANGLE:
+        return 0.0, pitch, math.atan2(-rotation[0, 1], rotation[1, 1])
+    roll = math.atan2(rotation[2, 1], rotation[2, 2])
+    return roll, pitch, math.atan2(rotation[1, 0], rotation[0, 0])
+
+
+def snap_rotation(rotation: Array) -> tuple[Array, Triple, Triple]:
+    """Snap roll, pitch and yaw of a rotation matrix.
+
+    Parameters
+    ----------
+    rotation
+        (3, 3) rotation matrix.
+
+    Returns
+    -------
+    tuple
+        The snapped rotation (the very same bits where nothing but rounding is snapped), and its
+        angles before and after.
+    """
+    before = rpy_from_rotation(rotation)
+    after = snap_angles(before)
+    if differs(before, after) or all(_is_right(angle) for angle in after):
+        rotation = rotation_from_rpy(after)
+    return clean_rotation(rotation), before, after
+
+
+def differs(before: Triple, after: Triple) -> bool:
+    """Say whether something was snapped, other than rounding."""
+    return max(abs(a - b) for a, b in zip(before, after, strict=True)) > ROUNDING
+
+
+def clean_rotation(rotation: Array) -> Array:
+    """Set entries of a rotation matrix that are 0 or +-1 up to rounding to exactly that."""
+    clean = np.where(np.abs(rotation) < ROUNDING, 0.0, rotation)
+    filled = clean != 0
+    alone = filled & (filled.sum(axis=0) == 1) & (filled.sum(axis=1) == 1)[:, None]
+    return np.where(alone, np.sign(clean), clean)
+
+
+def clean_lengths(lengths: Array, scale: float) -> Array:
+    """Set lengths that are rounding noise beside ``scale`` [m] to exactly zero."""
+    return np.where(np.abs(lengths) < ROUNDING * scale, 0.0, lengths)
+
+
+def _quarter_turns(angle: float) -> int:
+    return round(angle / _RIGHT)
+
+
+def _is_right(angle: float) -> bool:
+    return angle == _quarter_turns(angle) * _RIGHT
+
+
+def _cos_sin(angle: float) -> tuple[float, float]:
+    if _is_right(angle):
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[_quarter_turns(angle) % 4]
+    return math.cos(angle), math.sin(angle)
