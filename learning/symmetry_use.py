@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sklearn.base import BaseEstimator, RegressorMixin, clone
 
 from symbolic.errors import InputError
+from symbolic.relations import wrap
 
 Array = NDArray[np.float64]
 
@@ -31,17 +32,6 @@ class GroupArrays(Protocol):
     A_sat: Any
     d_sat: Any
     Y: Any
-
-
-def wrap(angles: Any) -> Array:
-    """Bring angle differences into [-pi, pi) [rad], element by element.
-
-    Examples
-    --------
-    >>> wrap(np.array([0.0, 3.5, -7.0])).round(3).tolist()
-    [0.0, -2.783, -0.717]
-    """
-    return np.asarray((np.asarray(angles, dtype=float) + np.pi) % (2 * np.pi) - np.pi)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Cell list on a torus: the prototypes near a point, at a cost that does not grow with their number."""
+"""Cell list on a torus: the points near a point, at a cost that does not grow with their number."""
 
 from __future__ import annotations
 
@@ -187,7 +187,8 @@ def enter(grid, entries, number, y):
     home = np.empty(rank, dtype=np.int64)
     for axis in range(rank):
         count = grid.cells[axis]
-        home[axis] = min(max(int(np.floor((y[axis] + np.pi) * (count / (2 * np.pi)))), 0), count - 1)
+        step = int(np.floor((y[axis] + np.pi) * (count / (2 * np.pi))))
+        home[axis] = min(max(step, 0), count - 1)
         first[axis] = -((home[axis] + grid.margin[axis]) // count)
         last[axis] = (count + grid.margin[axis] - 1 - home[axis]) // count
         shift[axis] = first[axis]
@@ -253,7 +254,7 @@ def find_near(grid, points, y, found, offset, squared):
 
 @njit(cache=True)
 def scan_all(grid, points, y, limit, found, offset, squared):
-    """As ``find_near``, looking at every point: one image each, the difference wrapped by component.
+    """As ``find_near``, but looks at every point: one image each, differences wrapped by component.
 
     Finds those with squared distance up to ``limit``; the least squared distance is that of all.
     """

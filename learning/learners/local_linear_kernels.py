@@ -85,9 +85,7 @@ def search(grid, counts, y, work):
     if found == 0 and counts[0] > 0:
         _, least = scan_all(grid, counts[0], y, -1.0, work.found, work.offset, work.squared)
         limit = least + grid.search_radius * grid.search_radius
-        found, least = scan_all(
-            grid, counts[0], y, limit, work.found, work.offset, work.squared
-        )
+        found, least = scan_all(grid, counts[0], y, limit, work.found, work.offset, work.squared)
     return found, least
 
 
@@ -279,9 +277,7 @@ def train(
     for s in range(samples):
         if counts[0] + needed > parameters.shape[0]:
             return s
-        update_copies(
-            grid, counts, parameters, symmetries, q[s], torque[s], weights[s], work, rule
-        )
+        update_copies(grid, counts, parameters, symmetries, q[s], torque[s], weights[s], work, rule)
         if replays <= 0:
             continue
         stored[1] += 1

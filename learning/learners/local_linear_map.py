@@ -16,7 +16,7 @@ from learning.learners.local_linear_kernels import (
     slope_batch,
     train,
 )
-from learning.learners.samples import checked_configurations, checked_samples, fitted
+from learning.learners.sample_checks import checked_configurations, checked_samples, fitted
 from learning.symmetry_use import GroupArrays, SavedGroup, SymmetryCoordinates
 from symbolic.errors import InputError
 
