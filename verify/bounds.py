@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from flint import arb, ctx
 from numpy.typing import ArrayLike, NDArray
@@ -184,7 +186,7 @@ def certified_error(
         return np.array([max(0.0, lower(abs(x))) for x in error])
 
 
-def _wave(k: list[int], a: object, b: object, q: list[arb]) -> arb:
+def _wave(k: list[int], a: Any, b: Any, q: list[arb]) -> arb:
     """Return b cos(k.q) - a sin(k.q): the torque that term k contributes per unit of k_i."""
     phase = sum((c * x for c, x in zip(k, q, strict=True) if c), arb(0))
     return arb(b) * phase.cos() - arb(a) * phase.sin()

@@ -108,12 +108,13 @@ def simplest_configuration(fails: Callable[[Vector], bool], found: Vector) -> Ve
     [0.0, 0.5]
     """
     # here, not above: the import takes a third of a second that a claim that holds never needs
-    from hypothesis import HealthCheck, find, settings
+    from hypothesis import HealthCheck, Phase, find, settings
     from hypothesis import strategies as st
     from hypothesis.errors import NoSuchExample
 
     options = settings(
         max_examples=EXAMPLES,
+        phases=[Phase.generate, Phase.shrink],
         database=None,
         deadline=None,
         suppress_health_check=list(HealthCheck),

@@ -1,0 +1,176 @@
+"""Relations are proved, bounded or refuted rightly; no lie passes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
+from symbolic.kinematic_tree import planar_arm
+from symbolic.relations import SymmetryRelation
+from symbolic.robots import load_robot
+from verify import strategies
+from verify.relations import describe_relation, verify_relation, verify_relations
+from verify.verdict import Status, all_passed
+
+FEW = settings(
+    max_examples=25, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
+)
+TOLERANCE = 1e-9
+
+
+def pinocchio_error(name, relation, q):
+    """Error of a relation at one configuration, from Pinocchio alone [N m]."""
+    robot = load_robot(name)
+    data = robot.source_model.createData()
+    here, there = (
+        pin.computeGeneralizedGravity(robot.source_model, data, robot.source_configuration(x))
+        for x in (q, relation.A @ q + relation.d)
+    )
+    return np.abs(there - relation.Y * here).max()
+
+
+@pytest.mark.parametrize("name", ["pendulum", "2r", "3r", "4r-planar"])
+def test_every_relation_of_the_built_in_arms_is_proved(arms, name):
+    verdicts = verify_relations(arms[name].group, arms[name].gravity, tolerance=0.0)
+    assert {verdict.status for verdict in verdicts} == {Status.PROVED}
+    assert max(verdict.worst_error for verdict in verdicts) < 1e-13
+    assert all_passed(verdicts)
+
+
+def planted_lies():
+    """Fifty lies, of each kind, spread over arms and relations."""
+    rng = np.random.default_rng(1)
+    for i in range(50):
+        name = ("2r", "3r", "pendulum", "4r-planar")[i % 4]
+        place = ("Y", "A", "d")[i % 3]
+        yield pytest.param(name, place, int(rng.integers(2**32)), id=f"{i}-{name}-{place}")
+
+
+@pytest.mark.parametrize(("name", "place", "seed"), list(planted_lies()))
+def test_planted_lies_are_refuted(arms, name, place, seed):
+    arm, rng = arms[name], np.random.default_rng(seed)
+    true = arm.group[int(rng.integers(arm.group.order))]
+    A, d, Y = true.A.copy(), true.d.copy(), true.Y.copy()
+    i, j = rng.integers(true.n, size=2)
+    sign = rng.choice([-1, 1])
+    if place == "Y":
+        Y[i] *= -1
+    elif place == "A":
+        A[i, j] += sign
+    else:
+        d[i] += sign * 1e-6
+    lie = SymmetryRelation(A, d, Y)
+    verdict = verify_relation(lie, arm.gravity, TOLERANCE)
+    assert verdict.status is Status.REFUTED
+    assert not verdict.passed
+    assert verdict.counterexample is not None
+    error = pinocchio_error(name, lie, verdict.counterexample)
+    assert TOLERANCE < error <= verdict.worst_error * (1 + 1e-9)
+
+
+def test_the_map_of_the_issue_is_proved_and_its_neighbour_refuted(two_link):
+    true = SymmetryRelation([[-1, 0], [2, 1]], [0, 0], [1, 1])
+    assert true in two_link.group
+    assert verify_relation(true, two_link.gravity, 0.0).status is Status.PROVED
+    neighbour = SymmetryRelation([[-1, 0], [2, -1]], [0, 0], [1, 1])
+    verdict = verify_relation(neighbour, two_link.gravity, TOLERANCE)
+    assert verdict.status is Status.REFUTED
+    assert verdict.counterexample.tolist() == [0.1, 0.1]  # both joints must move; no less will do
+    assert pinocchio_error("2r", neighbour, verdict.counterexample) > TOLERANCE
+
+
+@FEW
+@given(st.data())
+def test_random_arms_truth_is_proved_and_lies_are_refuted(data):
+    arm = data.draw(strategies.known_arms(1, 3))
+    true = data.draw(strategies.relations(arm.group))
+    assert verify_relation(true, arm.gravity, 0.0).status is Status.PROVED
+    lie = data.draw(strategies.lies(arm.group, arm.active))
+    verdict = verify_relation(lie, arm.gravity, 0.0)
+    assert verdict.status is Status.REFUTED
+    q = verdict.counterexample
+    error = np.abs(
+        arm.gravity.potential.gradient(lie.configuration(q))
+        - lie.torque(arm.gravity.potential.gradient(q))
+    ).max()
+    assert 0.0 < error <= verdict.worst_error * (1 + 1e-6) + 1e-12
+
+
+def test_a_small_error_is_bounded_and_the_bound_is_sharp(two_link):
+    near = SymmetryRelation([[-1, 0], [2, 1]], [1e-3, 0], [1, 1])
+    verdict = verify_relation(near, two_link.gravity, 0.1)
+    assert verdict.status is Status.BOUNDED
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (20000, 2))
+    error = two_link.gravity.torque(near.configuration(q)) - two_link.gravity.torque(q)
+    assert 0.99 * verdict.worst_error < np.abs(error).max() <= verdict.worst_error
+    assert verify_relation(near, two_link.gravity, 0.99 * verdict.worst_error).passed is False
+
+
+def test_a_bound_above_the_tolerance_without_counterexample_is_only_tested(arms):
+    arm = arms["3r"]  # four waves, but only three free phases: the peaks never all meet
+    near = SymmetryRelation(np.eye(3), [2e-3, 0.0, 3e-3], np.ones(3))
+    strict = verify_relation(near, arm.gravity, 1e-9)
+    between = 1.001 * strict.worst_error
+    verdict = verify_relation(near, arm.gravity, between)
+    assert verdict.status is Status.TESTED
+    assert verdict.passed
+    assert verdict.worst_error == strict.worst_error
+    assert verify_relation(near, arm.gravity, 2 * between).status is Status.BOUNDED
+
+
+@pytest.mark.parametrize(("tolerance", "status"), [(0.2, "bounded"), (0.01, "refuted")])
+def test_a_learned_real_matrix_is_bounded_or_refuted(two_link, tolerance, status):
+    learned = SymmetryRelation([[-1.0005, 2e-4], [2.0001, 0.9998]], [1e-4, -2e-4], [1, 1])
+    verdict = verify_relation(learned, two_link.gravity, tolerance)
+    assert verdict.status == status
+
+
+def test_the_same_question_has_the_same_answer(two_link):
+    lie = SymmetryRelation([[1, 0], [0, 1]], [0.3, 0.0], [1, -1])
+    first, second = (verify_relation(lie, two_link.gravity, TOLERANCE) for _ in range(2))
+    assert first.to_json() == second.to_json()
+
+
+def test_a_model_whose_torque_is_not_that_of_its_potential_is_not_trusted(two_link, monkeypatch):
+    broken = GravityModel(load_robot("2r"))
+    torque = broken.torque
+    monkeypatch.setattr(broken, "torque", lambda q: torque(q) + np.array([0.0, 0.01]))
+    flip = SymmetryRelation(np.eye(2), [np.pi, 0], [-1, -1])
+    assert verify_relation(flip, two_link.gravity).status is Status.PROVED
+    assert verify_relation(flip, broken).status is not Status.PROVED
+
+
+def test_float_potentials_are_judged_up_to_rounding(two_link, monkeypatch):
+    gravity = GravityModel(load_robot("2r"))
+    monkeypatch.setattr(gravity, "potential", gravity.potential.to_float())
+    for relation in two_link.group:
+        assert verify_relation(relation, gravity, 0.0).passed
+
+
+def test_relations_are_written_readably():
+    relation = SymmetryRelation([[0, 0], [1.5, -1]], [np.pi / 2, -0.25], [1, 1])
+    assert describe_relation(relation) == "q1' = pi/2, q2' = 1.5 q1 - q2 - 0.25, tau' = tau"
+    still = SymmetryRelation(np.zeros((1, 1)), [0], [-1])
+    assert describe_relation(still) == "q1' = 0, tau1' = -tau1"
+
+
+@pytest.mark.parametrize("tolerance", [-1.0, np.nan, np.inf])
+def test_impossible_tolerances_are_refused(two_link, tolerance):
+    with pytest.raises(InputError, match="tolerance"):
+        verify_relation(two_link.group[0], two_link.gravity, tolerance)
+
+
+def test_relations_of_another_arm_are_refused(arms):
+    with pytest.raises(InputError, match="number of joints is 3; accepted: 2"):
+        verify_relation(arms["3r"].group[0], arms["2r"].gravity)
+
+
+def test_symbolic_models_are_refused():
+    gravity = GravityModel(planar_arm(1))
+    with pytest.raises(InputError, match="substitute the symbols"):
+        verify_relation(SymmetryRelation([[1]], [0], [1]), gravity)
