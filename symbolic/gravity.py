@@ -20,7 +20,6 @@ Floats = NDArray[np.float64]
 RELATIVE_TOLERANCE = 1e-10
 """Disagreement with Pinocchio that rounding may cause, as a fraction of the largest torque."""
 
-_NEGLIGIBLE = 1e-12
 _CHECKED_CONFIGURATIONS = 32
 
 
@@ -117,22 +116,20 @@ class GravityModel:
         return self.potential.is_symbolic
 
     @cached_property
+    def significant_potential(self) -> TrigonometricPolynomial:
+        """The potential without terms below 1e-12 of the largest, which only stand for rounding."""
+        return self.potential.significant()
+
+    @cached_property
     def components(self) -> tuple[TrigonometricPolynomial, ...]:
-        """The torque of each joint as a trigonometric polynomial [N m]."""
-        return tuple(self.potential.derivative(i) for i in range(self.n))
+        """The torque of each joint as a trigonometric polynomial [N m], significant terms only."""
+        return tuple(self.significant_potential.derivative(i) for i in range(self.n))
 
     @cached_property
     def free_joints(self) -> tuple[str, ...]:
         """Names of the joints that feel no gravity torque and influence none."""
-        touched = np.abs(self.potential.frequencies)
-        if not self.is_symbolic:
-            weight = self.potential.amplitudes()
-            touched = touched[weight > _NEGLIGIBLE * weight.max(initial=0.0)]
-        return tuple(
-            name
-            for name, used in zip(self.joint_names, touched.any(axis=0), strict=True)
-            if not used
-        )
+        touched = self.significant_potential.frequencies.any(axis=0)
+        return tuple(name for name, used in zip(self.joint_names, touched, strict=True) if not used)
 
     def torque(self, q: ArrayLike) -> Floats:
         """Return the gravity torque.
@@ -152,7 +149,7 @@ class GravityModel:
         InputError
             For a wrong shape, or if the model contains symbols.
         """
-        return self._chain.torque(q)
+        return self.chain.torque(q)
 
     def stiffness(self, q: ArrayLike) -> Floats:
         """Return dg/dq [N m/rad], symmetric, of shape (..., n, n), at ``q`` (..., n) [rad].
@@ -162,10 +159,11 @@ class GravityModel:
         InputError
             For a wrong shape, or if the model contains symbols.
         """
-        return self._chain.stiffness(q)
+        return self.chain.stiffness(q)
 
     @cached_property
-    def _chain(self) -> GravityChain:
+    def chain(self) -> GravityChain:
+        """The tree reduced to what the torque depends on; raises InputError if it has symbols."""
         return GravityChain.of(self.tree)
 
     def _check(self, robot: Robot) -> float:

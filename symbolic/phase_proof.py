@@ -9,7 +9,8 @@ import sympy
 from flint import fmpq
 from numpy.typing import NDArray
 
-from symbolic.trigonometric import TrigonometricPolynomial, is_zero
+from symbolic.coefficients import is_zero
+from symbolic.trigonometric import TrigonometricPolynomial
 
 if TYPE_CHECKING:
     from symbolic.symmetries import Support

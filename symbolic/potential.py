@@ -8,8 +8,9 @@ import numpy as np
 import sympy
 from flint import fmpq
 
+from symbolic.coefficients import is_zero
 from symbolic.kinematic_tree import Entries, KinematicTree
-from symbolic.trigonometric import TrigonometricPolynomial, is_zero
+from symbolic.trigonometric import TrigonometricPolynomial
 
 
 def derive_potential(tree: KinematicTree) -> TrigonometricPolynomial:
@@ -31,7 +32,8 @@ def derive_potential(tree: KinematicTree) -> TrigonometricPolynomial:
     -----
     Only the direction of gravity is carried down the chain, as a row vector seen from each link:
     ``v_i = v_parent R_i (R0 + R1 cos q_i + R2 sin q_i)`` with Rodrigues' ``R0 = a a^T``,
-    ``R1 = 1 - a a^T``, ``R2 = [a]x``. Then ``U = -sum_i (v_parent . p_i) m_subtree,i + v_i . m_i c_i``.
+    ``R1 = 1 - a a^T``, ``R2 = [a]x``. Then
+    ``U = -sum_i (v_parent . p_i) m_subtree,i + v_i . m_i c_i``.
     Since q_i is new to v_parent, every term spawns its three successors without collisions; the
     whole derivation is a handful of matrix products per joint.
 

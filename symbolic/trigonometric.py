@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -12,16 +12,16 @@ import sympy
 from flint import fmpq
 from numpy.typing import ArrayLike, NDArray
 
+from symbolic.coefficients import (
+    Coefficients,
+    coefficient_array,
+    integer_like,
+    is_zero,
+    to_float,
+    to_sympy,
+)
 from symbolic.errors import InputError
-
-Coefficients = NDArray[Any]
-
-
-def is_zero(value: Any) -> bool:
-    """Say whether a float, rational or SymPy coefficient is exactly zero."""
-    if isinstance(value, sympy.Basic):
-        return bool(value.is_zero) or (not value.is_Atom and sympy.expand(value) == 0)
-    return bool(value == 0)
+from symbolic.trigonometric_text import polynomial_text
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ class TrigonometricPolynomial:
         if k.size and not np.all(k == np.round(k.astype(float))):
             raise InputError("trigonometric polynomial", "frequencies", k, "integers")
         k = k.astype(np.int64)
-        a, b = (_coefficients(x, len(k)) for x in (cos, sin))
+        a, b = (coefficient_array(x, len(k)) for x in (cos, sin))
         if a.dtype != b.dtype:
             a, b = a.astype(object), b.astype(object)
         k, a, b = _folded(k, a, b)
@@ -116,7 +116,7 @@ class TrigonometricPolynomial:
         """
         if self.cos.dtype != object:
             return self
-        return self._map(_to_float, np.float64)
+        return self._map(to_float, np.float64)
 
     def evaluate(self, q: ArrayLike) -> NDArray[np.float64]:
         """Evaluate at configurations ``q`` of shape (..., n); result of shape (...)."""
@@ -154,7 +154,7 @@ class TrigonometricPolynomial:
 
     def derivative(self, variable: int) -> TrigonometricPolynomial:
         """Return the derivative with respect to variable number ``variable``."""
-        factor = [_integer(int(x), self.cos) for x in self.frequencies[:, variable]]
+        factor = [integer_like(int(x), self.cos) for x in self.frequencies[:, variable]]
         a = np.array([f * b for f, b in zip(factor, self.sin, strict=True)], dtype=self.cos.dtype)
         b = np.array([-f * a for f, a in zip(factor, self.cos, strict=True)], dtype=self.cos.dtype)
         return TrigonometricPolynomial(self.frequencies, a, b, self.names)
@@ -224,6 +224,20 @@ class TrigonometricPolynomial:
         """Return bounds on |df/dq_i| over all q, shape (n,)."""
         return np.asarray(self.amplitudes() @ np.abs(self.frequencies), dtype=float)
 
+    def significant(self, relative: float = 1e-12) -> TrigonometricPolynomial:
+        """Return the polynomial without terms below ``relative`` times its largest amplitude.
+
+        Cosine and sine of a rounded angle, taken as rationals, miss cos^2 + sin^2 = 1 by an ulp:
+        exact arithmetic then keeps terms that only stand for that. With symbols nothing is dropped.
+        """
+        if self.is_symbolic:
+            return self
+        size = self.amplitudes()
+        keep = size > relative * size.max(initial=0.0)
+        return TrigonometricPolynomial(
+            self.frequencies[keep], self.cos[keep], self.sin[keep], self.names
+        )
+
     # -- views ----------------------------------------------------------------------------------
 
     def to_sympy(self, symbols: tuple[sympy.Symbol, ...] | None = None) -> sympy.Expr:
@@ -232,22 +246,15 @@ class TrigonometricPolynomial:
         total = sympy.Integer(0)
         for k, a, b in zip(self.frequencies.tolist(), self.cos, self.sin, strict=True):
             phase = sympy.Add(*[c * x for c, x in zip(k, q, strict=True)])
-            total += _to_sympy(a) * sympy.cos(phase) + _to_sympy(b) * sympy.sin(phase)
+            total += to_sympy(a) * sympy.cos(phase) + to_sympy(b) * sympy.sin(phase)
         return total
 
+    def renamed(self, names: Sequence[str]) -> TrigonometricPolynomial:
+        """Return the same polynomial with other names for its variables."""
+        return TrigonometricPolynomial(self.frequencies, self.cos, self.sin, tuple(names))
+
     def __str__(self) -> str:
-        pieces: list[str] = []
-        for k, a, b in zip(self.frequencies.tolist(), self.cos, self.sin, strict=True):
-            phase = _phase_text(k, self.names)
-            for value, function in ((a, "cos"), (b, "sin")):
-                if is_zero(value):
-                    continue
-                wave = f"{function}({phase})" if any(k) else ""
-                pieces.append(_term_text(value, wave))
-        if not pieces:
-            return "0"
-        text = " + ".join(pieces)
-        return text.replace("+ -", "- ")
+        return polynomial_text(self.frequencies, self.cos, self.sin, self.names)
 
     def _map(self, convert: Callable[[Any], Any], dtype: Any) -> TrigonometricPolynomial:
         return TrigonometricPolynomial(
@@ -256,20 +263,6 @@ class TrigonometricPolynomial:
             np.array([convert(x) for x in self.sin], dtype=dtype),
             self.names,
         )
-
-
-def _coefficients(values: ArrayLike, m: int) -> Coefficients:
-    array = np.asarray(values)
-    if array.shape != (m,):
-        raise InputError(
-            "trigonometric polynomial", "shape of coefficients", array.shape, f"({m},)"
-        )
-    if array.dtype == object:
-        return array
-    array = array.astype(np.float64)
-    if not np.all(np.isfinite(array)):
-        raise InputError("trigonometric polynomial", "coefficients", array, "finite numbers")
-    return array
 
 
 def _folded(
@@ -304,43 +297,3 @@ def _folded(
         if i != first[j]:
             new_a[j], new_b[j] = new_a[j] + a[i], new_b[j] + b[i]
     return _folded(k[first], new_a, new_b)
-
-
-def _integer(value: int, like: Coefficients) -> Any:
-    if like.dtype != object:
-        return float(value)
-    return sympy.Integer(value) if any(isinstance(x, sympy.Basic) for x in like) else fmpq(value)
-
-
-def _to_float(value: Any) -> float:
-    if isinstance(value, fmpq):
-        return int(value.p) / int(value.q)
-    try:
-        return float(value)
-    except TypeError:
-        raise InputError(
-            "trigonometric polynomial", "coefficient", value, "a number (substitute the symbols)"
-        ) from None
-
-
-def _to_sympy(value: Any) -> sympy.Expr:
-    if isinstance(value, fmpq):
-        return sympy.Rational(int(value.p), int(value.q))
-    return sympy.sympify(value)
-
-
-def _phase_text(k: list[int], names: tuple[str, ...]) -> str:
-    text = ""
-    for factor, name in zip(k, names, strict=True):
-        if factor:
-            size = name if abs(factor) == 1 else f"{abs(factor)} {name}"
-            sign = " - " if factor < 0 else " + "
-            text += (sign if text else sign.strip(" +")) + size
-    return text
-
-
-def _term_text(value: Any, wave: str) -> str:
-    if isinstance(value, sympy.Basic):
-        return str(sympy.factor_terms(value) * sympy.Symbol(wave)) if wave else str(value)
-    number = f"{_to_float(value):.6g}"
-    return f"{number} {wave}".strip()
