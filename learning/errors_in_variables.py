@@ -1,0 +1,128 @@
+"""Least squares for gravity coefficients when the angles are measured with errors too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symbolic.errors import InputError
+
+Array = NDArray[np.float64]
+Frequencies = NDArray[np.int64]
+
+DEPENDENT = 1e-9  # of the largest singular value of the scaled design
+ITERATIONS = 12
+
+
+@dataclass(frozen=True)
+class MeasurementNoise:
+    """Standard deviations of independent errors of every measured value.
+
+    Attributes
+    ----------
+    angle : float
+        Of a joint angle [rad].
+    torque : float
+        Of a torque [N m].
+    """
+
+    angle: float
+    torque: float
+
+    def __post_init__(self) -> None:
+        for name, value in (("angle", self.angle), ("torque", self.torque)):
+            if not (np.isfinite(value) and value >= 0.0):
+                raise InputError("measurement noise", name, value, "a number >= 0")
+
+
+class Undetermined(Exception):
+    """The samples do not determine the potential; the message says what is missing."""
+
+
+def torque_features(frequencies: Frequencies, q: Array) -> Array:
+    """Gradients of cos(k.q) and sin(k.q), shape (N, n, 2 m), at q (N, n)."""
+    phase = q @ frequencies.T
+    k = frequencies.T[None, :, :]
+    return np.concatenate([-np.sin(phase)[:, None] * k, np.cos(phase)[:, None] * k], axis=2)
+
+
+def solve(design: Array, target: Array) -> Array:
+    """Least squares, columns scaled to one size.
+
+    Raises
+    ------
+    Undetermined
+        If the columns are linearly dependent.
+    """
+    size = np.linalg.norm(design, axis=0)
+    if (size > 0.0).all():
+        solution, _, _, singular = np.linalg.lstsq(design / size, target, rcond=None)
+        if singular[-1] > DEPENDENT * singular[0]:
+            return np.asarray(solution / size)
+    raise Undetermined(
+        "samples in general position: the given configurations leave combinations of the "
+        "coefficients open (a joint that never moved, or a torque that was always the same)"
+    )
+
+
+def stiffness_matrices(frequencies: Frequencies, coefficients: Array, q: Array) -> Array:
+    """Hessian of the potential, shape (N, n, n)."""
+    m = len(frequencies)
+    phase = q @ frequencies.T
+    weight = -(np.cos(phase) * coefficients[:m] + np.sin(phase) * coefficients[m:])
+    k = frequencies.astype(float)
+    return np.einsum("Nm,mi,mj->Nij", weight, k, k, optimize=True)
+
+
+def weighted_fit(
+    q: Array, tau: Array, frequencies: Frequencies, start: Array, noise: MeasurementNoise
+) -> tuple[Array, Array, tuple[float, float]]:
+    """Fit coefficients to samples whose angles and torques both have errors.
+
+    Parameters
+    ----------
+    q, tau : (N, n) arrays
+        Samples [rad], [N m].
+    frequencies : (m, n) int array
+    start : (2 m,) array
+        Coefficients to start from.
+    noise : MeasurementNoise
+        Noise levels, up to a common factor.
+
+    Returns
+    -------
+    coefficients : (2 m,) array
+    root : (2 m, 2 m) array
+        Triangular root of the normal matrix.
+    likelihood : (float, float)
+        Weighted sum of squared residuals, and the log determinants that the restricted
+        likelihood adds to it.
+    """
+    estimate, true_q = start, q
+    unit = np.eye(q.shape[1])
+    spread = 1.0
+    for _ in range(ITERATIONS):
+        stiffness = stiffness_matrices(frequencies, estimate, true_q)
+        transposed = np.swapaxes(stiffness, 1, 2)
+        variance = noise.torque**2 * unit + noise.angle**2 * stiffness @ transposed
+        cholesky = np.linalg.cholesky(variance)
+        features = torque_features(frequencies, true_q)
+        target = tau - np.einsum("Nij,Nj->Ni", stiffness, q - true_q)
+        design = np.linalg.solve(cholesky, features).reshape(-1, features.shape[2])
+        white = np.linalg.solve(cholesky, target[:, :, None])[:, :, 0].ravel()
+        previous, estimate = estimate, solve(design, white)
+        residual = white - design @ estimate
+        squares = float(residual @ residual)
+        spread = float(np.sqrt(squares / max(1, white.size - design.shape[1])))
+        back = np.linalg.solve(np.swapaxes(cholesky, 1, 2), residual.reshape(q.shape)[:, :, None])
+        error = -(noise.angle**2) * (transposed @ back)[:, :, 0]
+        limit = 4.0 * noise.angle * max(spread, 1e-300)
+        true_q = q - np.clip(error, -limit, limit)
+        if np.abs(estimate - previous).max() <= 1e-10 * np.abs(estimate).max():
+            break
+    root: Array = np.asarray(np.linalg.qr(design, mode="r"))
+    diagonals = np.diagonal(cholesky, axis1=1, axis2=2)
+    log_volume = 2.0 * float(np.log(diagonals).sum() + np.log(np.abs(np.diag(root))).sum())
+    return estimate, root, (squares, log_volume)

@@ -1,0 +1,179 @@
+"""Symmetries identified from static samples through one fitted potential, without pairing."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import stats
+
+from learning.errors_in_variables import MeasurementNoise, Undetermined
+from learning.group_fit import GroupFit, torque_uncertainty
+from learning.group_search import candidate_relations, largest_consistent_group
+from learning.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
+from learning.potential_fit import (
+    FittedPotential,
+    all_frequencies,
+    fit_potential,
+    present_frequencies,
+)
+from learning.samples import static_samples
+from learning.silent_joints import silent_dependence
+from symbolic.integer_lattice import saturation
+from symbolic.relations import SymmetryGroup, SymmetryRelation, identity
+
+Array = NDArray[np.float64]
+
+SIGNIFICANCE = 1e-3
+"""Hypotheses with a smaller p-value are contradicted by the data."""
+PRESENCE = (1e-2, 1e-4, 1e-6)
+"""Levels at which a frequency counts as present; each gives candidate groups."""
+SCREEN = 1e-9
+"""Candidates are dropped unseen if one coefficient is off by this small a chance."""
+LARGEST_ERROR = 0.05
+"""Relations are claimed if the data exclude larger RMS torque errors, relative to RMS torque."""
+BOUND_DEVIATIONS = 3.0
+ZERO_TORQUE = 1e-9
+
+
+def identify(
+    q: ArrayLike, tau: ArrayLike, *, noise: MeasurementNoise | None = None
+) -> LearnedSymmetries:
+    """Find the symmetry group of the torque map behind static samples.
+
+    Parameters
+    ----------
+    q : (N, n) array_like
+        Configurations at rest [rad].
+    tau : (N, n) array_like
+        Torques that held them [N m].
+    noise : MeasurementNoise, optional
+        Noise levels where known; estimated from the misfit otherwise.
+
+    Returns
+    -------
+    LearnedSymmetries
+        ``missing`` says what the data lack; where it is not None only the identity is claimed,
+        unless it speaks of joints that never moved.
+
+    Raises
+    ------
+    InputError
+        If the arrays do not fit together.
+
+    Notes
+    -----
+    One potential is fitted to all samples (theory.md, section 5). Frequencies whose coefficients
+    differ significantly from zero give candidate relations; the largest closed set of them whose
+    symmetric potential explains the data as well as an unrestricted one (F or chi-square test)
+    is the group. It is claimed only if the data would have shown a violation: the torque error
+    that every relation may have at three standard errors must be small. Offsets and their errors
+    come from the symmetric fit, so they compose exactly.
+
+    Joints whose torque is zero in all samples are left out, after a check that the torque does not
+    depend on them.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(1)
+    >>> q = rng.uniform([-1.5, -1.5], [-0.1, 0.1], (5, 2))
+    >>> lower = 6.1 * np.cos(q[:, 0] + q[:, 1])
+    >>> tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
+    >>> found = identify(q, tau)
+    >>> found.order, found.missing
+    (8, None)
+    >>> identify(q[:3], tau[:3]).missing
+    '2 more samples: 3 different ones were given, 5 determine 8 coefficients and check them'
+    """
+    configurations, torques = static_samples(q, tau)
+    n = configurations.shape[1]
+    level = ZERO_TORQUE * float(np.abs(torques).max(initial=0.0))
+    level = max(level, 5.0 * noise.torque if noise else 0.0)
+    active: NDArray[np.bool_] = np.abs(torques).max(axis=0, initial=0.0) > level
+    if not active.any():
+        return _nothing(n, "samples with a torque: all given torques are zero")
+    try:
+        while True:
+            fit = fit_potential(configurations, torques, all_frequencies(n, active), noise)
+            involved, unmoved = silent_dependence(
+                configurations, torques, fit, active, LARGEST_ERROR, noise
+            )
+            if not involved:
+                break
+            active[involved] = True
+        best = _best_group(fit)
+    except Undetermined as lacking:
+        return _nothing(n, str(lacking))
+    return _claimed(fit, best, unmoved)
+
+
+def _nothing(n: int, missing: str, fit: FittedPotential | None = None) -> LearnedSymmetries:
+    unit = identity(n)
+    zero = np.zeros(n)
+    relation = LearnedRelation(unit, Knowledge.IDENTIFIED, 0, zero, 1.0)
+    return LearnedSymmetries(SymmetryGroup([unit]), (relation,), missing, "identification", fit)
+
+
+def _best_group(fit: FittedPotential) -> GroupFit:
+    """Largest consistent group over several ideas of which frequencies are present."""
+    deviations = float(
+        stats.norm.isf(SCREEN) if np.isinf(fit.freedom) else stats.t.isf(SCREEN, fit.freedom)
+    )
+    best: GroupFit | None = None
+    tried: set[bytes] = set()
+    for level in PRESENCE:
+        keep = present_frequencies(fit, level)
+        if not keep.any() or keep.tobytes() in tried:
+            continue
+        tried.add(keep.tobytes())
+        candidates = candidate_relations(fit, keep, deviations)
+        found = largest_consistent_group(fit, candidates, SIGNIFICANCE)
+        if found.p_value < SIGNIFICANCE:
+            continue
+        if best is None or len(found.group) > len(best.group):
+            best = found
+    if best is None:
+        raise Undetermined(_more_samples(fit, np.inf))
+    return best
+
+
+def _more_samples(fit: FittedPotential, excess: float) -> str:
+    """Say how many more samples the noise calls for; errors shrink with the root of the number."""
+    if np.isinf(excess):
+        return "more samples: no coefficient of the fitted potential stands out of the noise"
+    more = int(np.ceil(fit.samples * (excess**2 - 1.0)))
+    return (
+        f"about {max(1, more)} more samples: relations could still be wrong by "
+        f"{100.0 * LARGEST_ERROR * excess:.0f} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
+        "are allowed"
+    )
+
+
+def _claimed(fit: FittedPotential, best: GroupFit, unmoved: list[int]) -> LearnedSymmetries:
+    bound, rms = torque_uncertainty(fit, best.group, BOUND_DEVIATIONS)
+    n = bound.shape[1]
+    size = fit.rms_torque()
+    involved = best.group.basis.any(axis=0)
+    excess = float((rms / np.where(size > 0.0, size, np.inf))[:, involved].max(initial=0.0))
+    excess /= LARGEST_ERROR
+    if excess > 1.0:
+        return _nothing(n, _more_samples(fit, excess), fit)
+    group = best.group
+    _, completion = saturation(group.basis)
+    inverse = np.round(np.linalg.inv(completion.astype(float)))
+    rank = len(group.basis)
+    relations = []
+    for i in range(len(group)):
+        block = np.eye(n)
+        block[:rank, :rank] = group.A[i]
+        A = np.round(inverse @ block @ completion)
+        d = inverse[:, :rank] @ group.d[i]
+        relations.append(SymmetryRelation(A, d, group.Y[i], group.basis, False, bound[i]))
+    learned = tuple(
+        LearnedRelation(r, Knowledge.IDENTIFIED, 0, error, best.p_value)
+        for r, error in zip(relations, best.offset_errors, strict=True)
+    )
+    missing = None
+    if unmoved:
+        names = ", ".join(str(joint + 1) for joint in unmoved)
+        missing = f"samples in which joint {names} moves: the relations hold at its one angle"
+    return LearnedSymmetries(SymmetryGroup(relations), learned, missing, "identification", fit)

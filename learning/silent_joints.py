@@ -1,0 +1,123 @@
+"""Check that the torque really does not depend on the joints that never needed one."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.errors_in_variables import MeasurementNoise, Undetermined
+from learning.potential_fit import (
+    FittedPotential,
+    Frequencies,
+    fit_potential,
+    present_frequencies,
+)
+from symbolic.relations import wrap
+
+Array = NDArray[np.float64]
+
+NEVER_MOVED = 1e-6
+LEVEL = 1e-4
+
+
+def depends_on_joint(
+    q: Array,
+    tau: Array,
+    joint: int,
+    present: Frequencies,
+    largest_error: float,
+    noise: MeasurementNoise | None,
+) -> bool:
+    """Say whether the torque depends on a joint whose own torque was always zero.
+
+    Parameters
+    ----------
+    q, tau : (N, n) arrays
+        Samples [rad], [N m].
+    joint : int
+        The joint in question.
+    present : (m, n) int array
+        Frequencies of the potential found without it.
+    largest_error : float
+        Torque an undetected dependence may cause, RMS, relative to the RMS torque.
+    noise : MeasurementNoise, optional
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    Undetermined
+        If the samples cannot tell. That is so where a joint that does need torque was only ever
+        seen at configurations where it needs none.
+
+    Notes
+    -----
+    The potential is fitted again with the frequencies e_j and k, k + e_j, k - e_j for all present
+    k. A joint that acts on the torque does so through one of them.
+    """
+    unit = np.zeros(q.shape[1], dtype=np.int64)
+    unit[joint] = 1
+    wider = np.concatenate([present, unit[None], present + unit, present - unit])
+    fit = fit_potential(q, tau, wider, noise)
+    new = wider[:, joint] != 0
+    if (present_frequencies(fit, LEVEL) & new).any():
+        return True
+    m = len(wider)
+    error = np.hypot(fit.standard_error[:m], fit.standard_error[m:])[new]
+    doubt = np.sqrt(0.5 * (3.0 * error) ** 2 @ wider[new].astype(float) ** 2).max()
+    excess = float(doubt / (largest_error * np.sqrt(np.mean(tau**2))))
+    if excess > 1.0:
+        more = int(np.ceil(fit.samples * (excess**2 - 1.0)))
+        raise Undetermined(
+            f"about {more} more samples: whether the torque depends on joint {joint + 1}, whose "
+            "own torque was always zero, is lost in the noise"
+        )
+    return False
+
+
+def never_moved(q: Array, joint: int, noise: MeasurementNoise | None) -> bool:
+    """Say whether a joint stood still in all samples."""
+    allowed = max(NEVER_MOVED, 6.0 * noise.angle if noise else 0.0)
+    return bool((np.abs(wrap(q[:, joint] - q[0, joint])) <= allowed).all())
+
+
+def silent_dependence(
+    q: Array,
+    tau: Array,
+    fit: FittedPotential,
+    active: NDArray[np.bool_],
+    largest_error: float,
+    noise: MeasurementNoise | None,
+) -> tuple[list[int], list[int]]:
+    """Examine all joints whose torque was always zero.
+
+    Returns
+    -------
+    involved : list of int
+        Joints the torque depends on after all.
+    unmoved : list of int
+        Joints that never moved, so that nothing is known about them.
+
+    Raises
+    ------
+    Undetermined
+        See `depends_on_joint`.
+    """
+    present = fit.frequencies[present_frequencies(fit, LEVEL)]
+    involved, unmoved = [], []
+    for joint in np.flatnonzero(~active).tolist():
+        if never_moved(q, joint, noise):
+            unmoved.append(joint)
+            continue
+        try:
+            dependent = depends_on_joint(q, tau, joint, present, largest_error, noise)
+        except Undetermined as lacking:
+            raise Undetermined(
+                f"torque on joint {joint + 1}: it was zero in all samples, and they cannot tell "
+                f"whether the other torques depend on its angle ({lacking})"
+            ) from None
+        if dependent:
+            involved.append(joint)
+    return involved, unmoved
