@@ -28,10 +28,25 @@ class GroupArrays(Protocol):
         Signs of the torques: the torque at y' is ``Y * tau``.
     """
 
-    basis: Any
-    A_sat: Any
-    d_sat: Any
-    Y: Any
+    @property
+    def basis(self) -> Array:
+        """See above."""
+        ...
+
+    @property
+    def A_sat(self) -> Array:
+        """See above."""
+        ...
+
+    @property
+    def d_sat(self) -> Array:
+        """See above."""
+        ...
+
+    @property
+    def Y(self) -> Array:
+        """See above."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
