@@ -58,10 +58,15 @@ class DirichletCell:
     @property
     def halfspaces(self) -> Floats:
         """Rows ``[a.., b]`` with ``a . y <= b``, largest entry of a in size 1; shape (f, r + 1)."""
-        scale = np.abs(self.normals).max(axis=1, initial=0.0)
-        rows = np.column_stack([self.normals, self.offsets]) / scale[:, None]
-        tidy = np.round(rows)
-        return np.where(np.abs(rows - tidy) < 1e-12, tidy, rows) + 0.0
+        return tidy_halfspaces(self.normals, self.offsets)
+
+
+def tidy_halfspaces(normals: Floats, offsets: Floats) -> Floats:
+    """Return rows ``[a.., b]`` scaled to a largest entry of 1, cleaned of rounding."""
+    scale = np.abs(normals).max(axis=1, initial=0.0)
+    rows = np.column_stack([normals, offsets]) / scale[:, None]
+    whole = np.round(rows)
+    return np.where(np.abs(rows - whole) < 1e-12, whole, rows) + 0.0
 
 
 def invariant_metric(A: NDArray[np.number]) -> Integers:
@@ -165,7 +170,7 @@ def dirichlet_cell(A: NDArray[np.number], d: Floats, center: Floats) -> Dirichle
         offsets=length[chosen] ** 2 / 2 + normals @ center,
         element=element[chosen],
         turns=turns[chosen],
-        vertices=np.linalg.solve(upper, corners.T).T + center,
+        vertices=np.linalg.solve(upper, _distinct(corners).T).T + center,
     )
 
 
@@ -190,7 +195,11 @@ def _corners(steps: Floats) -> Floats:
     outward, below = hull.equations[:, :-1], hull.equations[:, -1]
     if below.max() > -1e-9 * np.abs(dual).max():
         return dual[:0]
-    corners = -outward / below[:, None]
+    return np.asarray(-outward / below[:, None])
+
+
+def _distinct(corners: Floats) -> Floats:
+    """Return corners without repetitions (a corner of many facets is found more than once)."""
     pairs = cKDTree(corners).query_pairs(1e-8 * np.abs(corners).max(), output_type="ndarray")
     return np.asarray(np.delete(corners, pairs[:, 1], axis=0))
 
@@ -199,10 +208,10 @@ def _is_facet(steps: Floats, corners: Floats) -> NDArray[np.bool_]:
     """Say which half-spaces meet the polytope in a face of r - 1 dimensions."""
     r = steps.shape[1]
     half = (steps**2).sum(axis=1) / 2
-    touching = steps @ corners.T >= (half * (1 - 1e-9))[:, None]
+    touching = steps @ corners.T >= (half * (1 - 1e-11))[:, None]
     facet = touching.sum(axis=1) >= r
     for i in np.flatnonzero(facet):
         face = corners[touching[i]]
         spread = np.linalg.svd(face - face.mean(axis=0), compute_uv=False)
-        facet[i] = r == 1 or spread[r - 2] > 1e-7 * math.sqrt(2 * half[i])
+        facet[i] = r == 1 or spread[r - 2] > 1e-9 * math.sqrt(2 * half[i])
     return facet

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symbolic.dirichlet_cell import TURN, DirichletCell, dirichlet_cell
+from symbolic.dirichlet_cell import TURN, DirichletCell, dirichlet_cell, tidy_halfspaces
 from symbolic.errors import InputError
 from symbolic.folding import Folder
 from symbolic.generic_center import generic_center
 from symbolic.lattice_points import Floats, Integers
 from symbolic.relations import SymmetryGroup, SymmetryRelation
+from symbolic.torus_action import TorusAction, torus_action
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +85,8 @@ class FundamentalDomain:
     >>> domain.halfspaces.round(4).tolist()
     [[-1.0, 0.0, 0.0], [1.0, 0.0, 1.5708], [-1.0, -1.0, 0.0], [1.0, 1.0, 3.1416]]
     >>> q0, relation = domain.canonicalise([2.0, 0.3])
-    >>> q0.round(4), domain.contains(q0)
-    (array([ 1.1416, -0.3   ]), True)
+    >>> q0.round(4).tolist(), domain.contains(q0), relation.Y.tolist()
+    ([1.1416, -0.3], True, [-1.0, -1.0])
     """
 
     def __init__(self, group: SymmetryGroup, center: ArrayLike | None = None) -> None:
@@ -93,18 +94,21 @@ class FundamentalDomain:
         self.basis: Integers = np.asarray(group.basis, dtype=np.int64)
         lift = np.linalg.inv(group.completion)[:, : group.rank]
         self._lift: Floats = np.where(np.abs(lift - np.rint(lift)) < 1e-9, np.rint(lift), lift)
+        self._action: TorusAction = torus_action(group.A_sat, group.d_sat)
         if center is None:
-            self.center: Floats = self._lift @ generic_center(group.A_sat, group.d_sat)
+            w = generic_center(self._action.A, self._action.d)
+            self.center: Floats = self._lift @ self._action.scale @ w
         else:
             self.center = self._configurations(center)
             if self.center.shape != (group.n,):
                 raise InputError(
                     "fundamental domain", "shape of centre", self.center.shape, f"({group.n},)"
                 )
+        self._from_y: Floats = np.asarray(np.linalg.inv(self._action.scale), dtype=float)
         self._cell: DirichletCell = dirichlet_cell(
-            group.A_sat, group.d_sat, self.basis @ self.center
+            self._action.A, self._action.d, self._from_y @ self.basis @ self.center
         )
-        self._folder = Folder(self._cell, group.A_sat, group.d_sat)
+        self._folder = Folder(self._cell, self._action)
 
     @classmethod
     def near(cls, group: SymmetryGroup, q: ArrayLike) -> FundamentalDomain:
@@ -115,12 +119,11 @@ class FundamentalDomain:
         """
         default = cls(group)
         home = default._configurations(q)
-        y = default.basis @ home
-        folded = default._folder.fold(y[None])
-        element, turns = int(folded.element[0]), folded.turns[0]
-        ahead = default.basis @ default.center - group.d_sat[element] - TURN * turns
-        nearest = np.linalg.solve(group.A_sat[element], ahead)
-        return cls(group, home + default._lift @ (nearest - y))
+        folded = default.fold(home)
+        g = int(folded.relation)
+        back = default.basis @ default.center - group.d_sat[g] - TURN * folded.turns
+        nearest = np.linalg.solve(group.A_sat[g], back)
+        return cls(group, home + default._lift @ (nearest - default.basis @ home))
 
     # -- what it is -----------------------------------------------------------------------------
 
@@ -132,12 +135,13 @@ class FundamentalDomain:
     @property
     def halfspaces(self) -> Floats:
         """Rows ``[a.., b]`` with ``a . y <= b``, y = B q; shape (f, r + 1), none redundant."""
-        return self._cell.halfspaces
+        return tidy_halfspaces(self._cell.normals @ self._from_y, self._cell.offsets)
 
     @property
     def vertices(self) -> Floats:
         """Corners in y = B q coordinates [rad], shape (v, r)."""
-        return self._cell.vertices
+        corners = self._cell.vertices @ self._action.scale.T
+        return np.where(np.abs(corners) < 1e-14, 0.0, corners)
 
     @property
     def volume(self) -> float:
@@ -147,7 +151,8 @@ class FundamentalDomain:
     @cached_property
     def neighbours(self) -> tuple[SymmetryRelation, ...]:
         """For each half-space, the relation that maps the domain onto its neighbour beyond it."""
-        return tuple(self.group[int(g)] for g in self._cell.element)
+        relation, _ = self._relations(self._cell.element, self._cell.turns)
+        return tuple(self.group[int(g)] for g in relation)
 
     # -- what it does ---------------------------------------------------------------------------
 
@@ -174,7 +179,8 @@ class FundamentalDomain:
         `contains_y` asks the same of the polytope itself, without full turns.
         """
         points = self._configurations(q)
-        closed = self._folder.fold(self._flat_y(points)).closed.reshape(points.shape[:-1])
+        folded = self._folder.fold(self._flat_y(points) @ self._from_y.T)
+        closed = folded.closed.reshape(points.shape[:-1])
         return closed if points.ndim > 1 else bool(closed)
 
     def fold(self, q: ArrayLike) -> FoldedConfigurations:
@@ -192,13 +198,14 @@ class FundamentalDomain:
         """
         points = self._configurations(q)
         y = self._flat_y(points)
-        folded = self._folder.fold(y)
+        folded = self._folder.fold(y @ self._from_y.T)
+        relation, turns = self._relations(folded.element, folded.turns)
         shape = points.shape[:-1]
-        moved = points.reshape(-1, self.group.n) + (folded.y - y) @ self._lift.T
+        step = folded.points @ self._action.scale.T - y
         return FoldedConfigurations(
-            moved.reshape(points.shape),
-            folded.element.reshape(shape),
-            folded.turns.reshape(*shape, y.shape[1]),
+            (points.reshape(-1, self.group.n) + step @ self._lift.T).reshape(points.shape),
+            relation.reshape(shape),
+            turns.reshape(*shape, y.shape[1]),
         )
 
     def canonicalise(self, q: ArrayLike) -> tuple[Floats, Any]:
@@ -233,9 +240,9 @@ class FundamentalDomain:
         Uniform in y = B q; components along free directions are those of the centre. (Points are
         drawn from the whole torus and folded: relations preserve volume.)
         """
-        y = rng.uniform(-np.pi, np.pi, (m, len(self.basis)))
-        inside = self._folder.fold(y).y
-        return np.asarray(self.center + (inside - self.basis @ self.center) @ self._lift.T)
+        inside = self._folder.fold(rng.uniform(-np.pi, np.pi, (m, len(self.basis)))).points
+        y = inside @ self._action.scale.T
+        return np.asarray(self.center + (y - self.basis @ self.center) @ self._lift.T)
 
     # -- helpers --------------------------------------------------------------------------------
 
@@ -244,6 +251,9 @@ class FundamentalDomain:
         members = np.empty(self.group.order, dtype=object)
         members[:] = list(self.group)
         return members
+
+    def _relations(self, element: Integers, turns: Integers) -> tuple[Integers, Integers]:
+        return self._action.relations(self.group.d_sat, element, turns)
 
     def _configurations(self, q: ArrayLike) -> Floats:
         points = np.asarray(q, dtype=float)

@@ -11,6 +11,7 @@ from symbolic.dirichlet_cell import TURN, DirichletCell
 from symbolic.errors import InputError
 from symbolic.integer_lattice import integer_inverse
 from symbolic.lattice_points import Floats, Integers
+from symbolic.torus_action import TorusAction
 
 ON_FACET = 1e-9
 """Points within this of a facet [rad] count as on it."""
@@ -26,17 +27,17 @@ class FoldedPoints:
 
     Attributes
     ----------
-    y : (m, r) array
-        The representatives, ``A[element] y + d[element] + 2 pi turns`` [rad].
+    points : (m, r) array
+        The representatives, ``A[element] w + d[element] + 2 pi turns`` [rad].
     element : (m,) int array
-        Which relation of the group leads there.
+        Which map of the group leads there.
     turns : (m, r) int array
         Full turns added.
     closed : (m,) bool array
-        Whether the point itself, up to full turns, lies in the closed cell.
+        Whether the point itself lies in the closed cell, up to full turns of y = scale w.
     """
 
-    y: Floats
+    points: Floats
     element: Integers
     turns: Integers
     closed: NDArray[np.bool_]
@@ -62,7 +63,7 @@ class Folder:
     ----------
     cell
         The cell.
-    A, d : (G, r, r) and (G, r) arrays
+    action
         The group it belongs to.
 
     Raises
@@ -78,23 +79,24 @@ class Folder:
     tracked in integers and applied once to the original point: no rounding errors pile up.
     """
 
-    def __init__(self, cell: DirichletCell, A: NDArray[np.number], d: Floats) -> None:
+    def __init__(self, cell: DirichletCell, action: TorusAction) -> None:
         self._cell = cell
-        self._A = np.round(np.asarray(A)).astype(float)
-        self._d = np.asarray(d, dtype=float)
+        self._A, self._d, self._scale = action.A, action.d, action.scale
         linear = self._A.astype(np.int64)
-        self._identity = _find(linear, self._d, np.eye(linear.shape[1], dtype=np.int64), 0 * d[0])
+        self._identity = _find(
+            linear, self._d, np.eye(linear.shape[1], dtype=np.int64), 0 * self._d[0]
+        )
         self._crossings = _crossing_table(cell, linear, self._d)
         self._to_basis = np.linalg.inv(cell.basis.astype(float)) / TURN
         self._facet_length = np.sqrt(np.einsum("fi,fi->f", cell.normals, cell.normals))
 
-    def fold(self, y: Floats) -> FoldedPoints:
-        """Fold the points ``y`` (m, r)."""
-        m, r = y.shape
+    def fold(self, w: Floats) -> FoldedPoints:
+        """Fold the points ``w`` (m, r)."""
+        m, r = w.shape
         element = np.full(m, self._identity)
-        turns = -np.rint((y - self._cell.center) @ self._to_basis).astype(np.int64)
+        turns = -np.rint((w - self._cell.center) @ self._to_basis).astype(np.int64)
         turns = turns @ self._cell.basis
-        point = y + TURN * turns
+        point = w + TURN * turns
         if r == 0 or m == 0:
             return FoldedPoints(point, element, turns, np.ones(m, dtype=bool))
         excess = self._excess(point)
@@ -102,7 +104,7 @@ class Folder:
         while len(active):
             facet = np.argmax(excess[active], axis=1)
             new_element, new_turns = self._cross(facet, element[active], turns[active])
-            new_point = self._apply(y[active], new_element, new_turns)
+            new_point = self._apply(w[active], new_element, new_turns)
             # offsets of learned relations may fit together only nearly: never go round in circles
             nearer = self._distance(new_point) < self._distance(point[active])
             active = active[nearer]
@@ -111,13 +113,13 @@ class Folder:
             excess[active] = self._excess(point[active])
             beyond = excess[active] > ON_FACET * self._facet_length
             active = active[beyond.any(axis=1)]
-        closed = element == self._identity
+        closed = self._goes_nowhere(element, turns)
         edge = np.flatnonzero((np.abs(excess) <= ON_FACET * self._facet_length).any(axis=1))
         if len(edge):
             element[edge], turns[edge], closed[edge] = self._on_boundary(
-                y[edge], element[edge], turns[edge]
+                w[edge], element[edge], turns[edge]
             )
-            point[edge] = self._apply(y[edge], element[edge], turns[edge])
+            point[edge] = self._apply(w[edge], element[edge], turns[edge])
         return FoldedPoints(point, element, turns, closed)
 
     def _excess(self, point: Floats) -> Floats:
@@ -127,10 +129,15 @@ class Folder:
         away = point - self._cell.center
         return np.einsum("mi,ij,mj->m", away, self._cell.metric, away)
 
-    def _apply(self, y: Floats, element: Integers, turns: Integers) -> Floats:
+    def _goes_nowhere(self, element: Integers, turns: Integers) -> NDArray[np.bool_]:
+        step = turns @ self._scale.T
+        whole = (np.abs(step - np.rint(step)) < 1e-9).all(axis=1)
+        return np.asarray((element == self._identity) & whole)
+
+    def _apply(self, w: Floats, element: Integers, turns: Integers) -> Floats:
         still = element == self._identity
-        moved = np.einsum("mij,mj->mi", self._A[element], y) + self._d[element]
-        return np.where(still[:, None], y, moved) + TURN * turns
+        moved = np.einsum("mij,mj->mi", self._A[element], w) + self._d[element]
+        return np.where(still[:, None], w, moved) + TURN * turns
 
     def _cross(
         self, facet: Integers, element: Integers, turns: Integers
@@ -140,16 +147,16 @@ class Folder:
         return table.element[facet, element], onward + table.turns[facet, element]
 
     def _on_boundary(
-        self, y: Floats, element: Integers, turns: Integers
+        self, w: Floats, element: Integers, turns: Integers
     ) -> tuple[Integers, Integers, NDArray[np.bool_]]:
         """Choose one of the equivalent boundary points: the last in lexicographic order.
 
         All members of the orbit in the closed cell are reached by crossing facets that the point
         lies on (the cells around a point hang together by facets).
         """
-        owner = np.arange(len(y))
+        owner = np.arange(len(w))
         ways = np.column_stack([owner, element, turns])
-        points = self._apply(y, element, turns)
+        points = self._apply(w, element, turns)
         fresh, fresh_points = ways, points
         while len(fresh):
             touching = np.abs(self._excess(fresh_points)) <= 2 * ON_FACET * self._facet_length
@@ -157,18 +164,18 @@ class Folder:
             new_element, new_turns = self._cross(facet, fresh[row, 1], fresh[row, 2:])
             reached = np.unique(np.column_stack([fresh[row, 0], new_element, new_turns]), axis=0)
             fresh = _rows_not_in(reached, ways)
-            fresh_points = self._apply(y[fresh[:, 0]], fresh[:, 1], fresh[:, 2:])
+            fresh_points = self._apply(w[fresh[:, 0]], fresh[:, 1], fresh[:, 2:])
             inside = (self._excess(fresh_points) <= 2 * ON_FACET * self._facet_length).all(axis=1)
             fresh, fresh_points = fresh[inside], fresh_points[inside]
             ways = np.concatenate([ways, fresh])
             points = np.concatenate([points, fresh_points])
-        closed = np.zeros(len(y), dtype=bool)
-        closed[ways[ways[:, 1] == self._identity, 0]] = True
+        closed = np.zeros(len(w), dtype=bool)
+        closed[ways[self._goes_nowhere(ways[:, 1], ways[:, 2:]), 0]] = True
         # the identity first, so that a representative is its own representative
         rank = np.lexsort((ways[:, 1] != self._identity, ways[:, 0]))
         ways, points = ways[rank], points[rank]
-        for coordinate in range(y.shape[1]):
-            best = np.full(len(y), -np.inf)
+        for coordinate in range(w.shape[1]):
+            best = np.full(len(w), -np.inf)
             np.maximum.at(best, ways[:, 0], points[:, coordinate])
             keep = points[:, coordinate] >= best[ways[:, 0]] - SAME_COORDINATE
             ways, points = ways[keep], points[keep]
