@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -247,7 +248,7 @@ class SymmetryGroup(Sequence[SymmetryRelation]):
     def __iter__(self) -> Iterator[SymmetryRelation]:
         return iter(self._relations)
 
-    def __getitem__(self, index):  # type: ignore[no-untyped-def]  # Sequence's overloads
+    def __getitem__(self, index: Any) -> Any:
         return self._relations[index]
 
     @property
@@ -271,7 +272,7 @@ class SymmetryGroup(Sequence[SymmetryRelation]):
     @cached_property
     def free_directions(self) -> Array:
         """Directions v with B v = 0, along which no torque changes, as rows (n - r, n)."""
-        return np.linalg.inv(self.completion).T[self.rank :].round(12) + 0.0
+        return np.asarray(np.linalg.inv(self.completion).T[self.rank :].round(12) + 0.0)
 
     @property
     def exact(self) -> bool:
@@ -289,7 +290,7 @@ class SymmetryGroup(Sequence[SymmetryRelation]):
         values = np.asarray(tau, dtype=float)
         return self.Y.reshape(len(self), *[1] * (values.ndim - 1), self.n) * values
 
-    def index(self, value, start=0, stop=None):  # type: ignore[no-untyped-def]
+    def index(self, value: Any, start: int = 0, stop: int | None = None) -> int:
         """Return the position of the relation that equals ``value`` modulo 2 pi."""
         for i, relation in enumerate(self._relations[start:stop], start):
             if relation.same_as(value):

@@ -148,7 +148,7 @@ class TrigonometricPolynomial:
     def complex(self) -> NDArray[np.complex128]:
         """Return C_k = (cos_k - i sin_k) / 2, so that f = sum over +-k of C_k exp(i k.q)."""
         _, a, b = self._numeric
-        return (a - 1j * b) / 2
+        return np.asarray((a - 1j * b) / 2, dtype=np.complex128)
 
     # -- algebra --------------------------------------------------------------------------------
 

@@ -1,0 +1,55 @@
+"""``isotorque domain``: the part of the configuration space that needs to be explored (BCTS)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from isotorque.cli.options import Json, NoSnap, RobotName, numbers
+from isotorque.cli.output import emit_json, row
+
+
+def domain(
+    robot: RobotName,
+    center: Annotated[
+        str | None,
+        typer.Option(
+            "--center",
+            metavar="Q1,Q2,..",
+            help="Configuration [rad] that the domain lies around.",
+            show_default="chosen",
+        ),
+    ] = None,
+    no_snap: NoSnap = False,
+    json: Json = False,
+) -> None:
+    """Describe a fundamental domain: exactly one configuration of each symmetric set."""
+    from symbolic.domain import FundamentalDomain
+    from symbolic.gravity import GravityModel
+    from symbolic.robots import load_robot
+    from symbolic.symmetries import primary_symmetries
+
+    loaded = load_robot(robot, snap=not no_snap)
+    at = None if center is None else numbers(center, "--center", loaded.n)
+    group = primary_symmetries(GravityModel(loaded).potential)
+    bcts = FundamentalDomain(group, at)
+    if json:
+        emit_json(
+            {
+                "robot": loaded.name,
+                "basis": group.basis,
+                "center": bcts.center,
+                "halfspaces": bcts.halfspaces,
+                "vertices": bcts.vertices,
+                "volume": bcts.volume,
+                "order": group.order,
+            }
+        )
+        return
+    print(f"{loaded.name}: one of {group.order} equal parts, volume {bcts.volume:.6g} rad^{group.rank}")
+    print(f"  y = B q with B = {group.basis.tolist()}")
+    for *a, b in bcts.halfspaces:
+        print(f"  {row(a)} . y <= {b:.6g}")
+    for vertex in bcts.vertices:
+        print(f"  vertex y = {row(vertex)}")

@@ -1,0 +1,69 @@
+"""The entry point: commands, exit status, one line per error."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import NoReturn
+
+import click
+import typer
+
+from isotorque.cli import derive, domain, robots, simulate, symmetries, verify
+from isotorque.cli import run as run_command
+from symbolic.errors import InputError
+
+app = typer.Typer(
+    name="isotorque",
+    help="The statics of robot arms and their symmetries: derived, learned, verified.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command("robots")(robots.robots)
+app.command("derive")(derive.derive)
+app.command("symmetries")(symmetries.symmetries)
+app.command("domain")(domain.domain)
+app.command("simulate")(simulate.simulate)
+app.command("verify")(verify.verify)
+app.command("run")(run_command.run)
+
+
+def run(arguments: list[str] | None = None) -> NoReturn:
+    """Run one command and leave with its exit status.
+
+    0 done and, where something was judged, passed; 1 judged and failed; 2 bad input or usage, said
+    in one line; 130 interrupted, with everything recorded so far kept.
+    """
+    sys.exit(status(sys.argv[1:] if arguments is None else arguments))
+
+
+def status(arguments: list[str]) -> int:
+    """Run one command and return its exit status."""
+    try:
+        code = app(args=arguments, prog_name="isotorque", standalone_mode=False)
+        sys.stdout.flush()
+    except click.exceptions.NoArgsIsHelpError as error:
+        print(error.format_message())
+        return 2
+    except click.UsageError as error:
+        return _refuse(" ".join(error.format_message().split()))
+    except InputError as error:
+        return _refuse(str(error))
+    except click.exceptions.Exit as error:
+        return error.exit_code
+    except (KeyboardInterrupt, click.Abort):
+        print("interrupted: everything recorded so far is kept", file=sys.stderr)
+        return 130
+    except BrokenPipeError:  # the reader of our output went away, e.g. `| head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        return _refuse(f"{error.filename or 'operating system'}: {error.strerror or error}")
+    return code if isinstance(code, int) else 0
+
+
+def _refuse(message: str) -> int:
+    print(f"error: {message}", file=sys.stderr)
+    return 2

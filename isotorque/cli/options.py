@@ -1,0 +1,51 @@
+"""Options and arguments that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+RobotName = Annotated[
+    str,
+    typer.Argument(
+        metavar="ROBOT",
+        help="A built-in robot (see `isotorque robots`) or a URDF file.",
+        show_default=False,
+    ),
+]
+Json = Annotated[
+    bool, typer.Option("--json", help="Print one JSON document and nothing else on stdout.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress bars and messages.")]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all random choices.")]
+NoSnap = Annotated[
+    bool,
+    typer.Option("--no-snap", help="Keep angles that are within 1e-5 rad of a multiple of pi/2."),
+]
+Out = Annotated[Path, typer.Option("--out", help="Directory for all results.", show_default=False)]
+
+
+def numbers(text: str, option: str, count: int) -> list[float]:
+    """Read ``count`` comma-separated numbers given to an option.
+
+    Raises
+    ------
+    InputError
+        Naming the option and the value.
+
+    Examples
+    --------
+    >>> numbers("1,-2.5", "--torque", 2)
+    [1.0, -2.5]
+    """
+    from symbolic.errors import InputError
+
+    try:
+        values = [float(x) for x in text.split(",")]
+    except ValueError:
+        values = []
+    if len(values) != count or not all(abs(x) < float("inf") for x in values):
+        raise InputError("command line", option, text, f"{count} finite numbers, with commas")
+    return values

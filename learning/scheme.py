@@ -1,0 +1,255 @@
+"""The general scheme: discover symmetries, learn the static torques, learn the model (Fig. 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
+from learning.discovery import DiscoverySettings, babble, choose_target, discover
+from learning.exploration import (
+    ConstrainedDirectionSampling,
+    ExplorationSettings,
+    ExplorationStep,
+    Learner,
+)
+from learning.explored_share import ExploredShare
+from learning.identification import identify
+from learning.learned_symmetries import LearnedSymmetries
+from learning.static_torques import StaticTorqueSet
+from symbolic.domain import FundamentalDomain
+from symbolic.errors import InputError
+from symbolic.relations import SymmetryGroup
+
+Array = NDArray[np.float64]
+SHARE_POINTS = 1000
+"""Points of the BCTS that tell how much of it has been explored."""
+
+LearnerFactory = Callable[[SymmetryGroup | None, Array], Learner]
+
+
+@dataclass(frozen=True)
+class SchemeSettings:
+    """Settings of the whole scheme.
+
+    Attributes
+    ----------
+    discovery : DiscoverySettings
+        Torque profiles and babbling.
+    exploration : ExplorationSettings
+        Constrained direction sampling.
+    n_min : int
+        Relations needed before learning begins (n_min of section 5.4).
+    confirmations : int
+        Target torques in a row that must leave the learned group as it is.
+    max_targets : int
+        Target torques at most; without enough relations by then, learning goes on with what is
+        known.
+    samples : int
+        Torques commanded while learning.
+    """
+
+    discovery: DiscoverySettings = field(default_factory=DiscoverySettings)
+    exploration: ExplorationSettings = field(default_factory=ExplorationSettings)
+    n_min: int = 2
+    confirmations: int = 1
+    max_targets: int = 12
+    samples: int = 2000
+
+    def __post_init__(self) -> None:
+        for name, least in (("n_min", 1), ("confirmations", 0), ("max_targets", 1), ("samples", 1)):
+            if getattr(self, name) < least:
+                raise InputError("scheme", name, getattr(self, name), f"at least {least}")
+
+
+@dataclass(frozen=True, eq=False)
+class Discovery:
+    """One motion of the discovery phase.
+
+    Attributes
+    ----------
+    target : (n,) array or None
+        tau* of the torque profile [N m]; None while babbling.
+    outcome : Outcome
+        How the motion ended.
+    playback : Playback or None
+        The profile and its joint trajectory.
+    new : bool
+        Whether a configuration was seen for the first time for this |tau*|.
+    """
+
+    target: Array | None
+    outcome: Outcome
+    playback: Playback | None
+    new: bool
+
+
+@dataclass(frozen=True, eq=False)
+class GateDecision:
+    """What was known after a target torque, and whether it suffices to begin learning."""
+
+    targets: int
+    order: int
+    passed: bool
+    missing: str | None
+
+
+class Scheme:
+    """The run of Fig. 8 on any arm that can play torque profiles.
+
+    Parameters
+    ----------
+    arm : ProfileArm
+        Nothing else is known of the robot.
+    rng : numpy.random.Generator
+        Source of randomness.
+    make_learner : callable
+        ``make_learner(group, torque_range)`` returns a fresh learner that exploits ``group``
+        (None: no symmetries).
+    settings : SchemeSettings
+        Numbers.
+    group : SymmetryGroup or None
+        Relations to use instead of learned ones (for comparisons); ``use_symmetries`` False: none.
+
+    Attributes
+    ----------
+    learned : LearnedSymmetries or None
+        What is known of the symmetries.
+    static_torques : StaticTorqueSet
+        The estimate of the SST.
+    domain : FundamentalDomain or None
+        The estimate of the BCTS, near home.
+    learner : Learner or None
+        The inverse statics model.
+    """
+
+    def __init__(
+        self,
+        arm: ProfileArm,
+        rng: np.random.Generator,
+        make_learner: LearnerFactory,
+        settings: SchemeSettings | None = None,
+        *,
+        group: SymmetryGroup | None = None,
+        use_symmetries: bool = True,
+    ) -> None:
+        self.arm, self.rng = arm, rng
+        self.settings = settings if settings is not None else SchemeSettings()
+        self.home = np.array(arm.q, dtype=float)
+        self.static_torques = StaticTorqueSet(len(self.home))
+        self.learned: LearnedSymmetries | None = None
+        self.domain: FundamentalDomain | None = None
+        self.learner: Learner | None = None
+        self.gates: list[GateDecision] = []
+        self.targets: list[Array] = []
+        self.exploration: ConstrainedDirectionSampling | None = None
+        self._make_learner, self._given, self._use = make_learner, group, use_symmetries
+        self._settled_q: list[Array] = []
+        self._settled_torque: list[Array] = []
+
+    # -- what has been seen ---------------------------------------------------------------------
+
+    @property
+    def samples(self) -> tuple[Array, Array]:
+        """Settled configurations and torques of the discovery, shapes (m, n) [rad], [N m]."""
+        n = len(self.home)
+        return (
+            np.array(self._settled_q).reshape(-1, n),
+            np.array(self._settled_torque).reshape(-1, n),
+        )
+
+    @property
+    def torque_range(self) -> Array:
+        """Largest torque held at each joint [N m], shape (n,); zero for joints without gravity."""
+        _, torques = self.samples
+        largest = np.abs(torques).max(axis=0, initial=0.0)
+        # joints that could not hold the smallest torque tried: gravity does not reach them
+        return np.where(largest > 1e-9 * largest.max(initial=0.0), largest, 0.0)
+
+    @property
+    def group(self) -> SymmetryGroup | None:
+        """The relations in use; None where symmetries are not exploited."""
+        if not self._use:
+            return None
+        if self._given is not None:
+            return self._given
+        return None if self.learned is None else self.learned.group
+
+    def _take(self, outcome: Outcome) -> None:
+        if outcome.kind is OutcomeKind.SETTLED:
+            self.static_torques.add(outcome.torque)
+            self._settled_q.append(np.array(outcome.q))
+            self._settled_torque.append(np.array(outcome.torque))
+        else:
+            self.static_torques.mark_inadmissible(outcome.torque)
+
+    # -- the two phases -------------------------------------------------------------------------
+
+    def discover(self) -> Iterator[Discovery]:
+        """Babble, then play torque profiles until enough relations are known.
+
+        Yields
+        ------
+        Discovery
+            Every motion. After each target torque the relations are learned anew and the gate
+            ``n_sym >= n_min`` is asked; ``gates`` keeps the answers.
+        """
+        settings = self.settings.discovery
+        self.arm.go_home()
+        for outcome in babble(self.arm, self.rng, settings.babbling):
+            self._take(outcome)
+            yield Discovery(None, outcome, None, outcome.kind is OutcomeKind.SETTLED)
+        self.arm.go_home()
+        for _ in range(self.settings.max_targets):
+            _, torques = self.samples
+            target = choose_target(torques, self.rng, settings.away_from_zero, self.targets)
+            if target is None:
+                break
+            self.targets.append(target)
+            for played in discover(self.arm, target, self.torque_range, self.rng, settings):
+                self._take(played.playback.outcome)
+                yield Discovery(target, played.playback.outcome, played.playback, played.new)
+            if self._gate():
+                break
+
+    def _gate(self) -> bool:
+        """Learn the relations from all settled samples; say whether they suffice."""
+        self.learned = identify(*self.samples)
+        order, missing = self.learned.order, self.learned.missing
+        recent = [g.order for g in self.gates[-self.settings.confirmations :]]
+        confirmed = len(recent) >= self.settings.confirmations and all(o == order for o in recent)
+        passed = missing is None and order >= self.settings.n_min and confirmed
+        if self.settings.confirmations == 0:
+            passed = missing is None and order >= self.settings.n_min
+        self.gates.append(GateDecision(len(self.targets), order, passed, missing))
+        return passed
+
+    def learn(self) -> Iterator[ExplorationStep]:
+        """Explore by Constrained Direction Sampling within the BCTS and learn online.
+
+        Yields
+        ------
+        ExplorationStep
+            Every commanded torque.
+        """
+        group = self.group
+        explored = None
+        if group is not None:
+            self.domain = FundamentalDomain.near(group, self.home)
+            points = self.domain.sample(np.random.default_rng(0), SHARE_POINTS)
+            explored = ExploredShare(points, self.settings.exploration.step_width, group)
+        self.learner = self._make_learner(group, self.torque_range)
+        self.exploration = ConstrainedDirectionSampling(
+            self.arm,
+            self.learner,
+            self.rng,
+            torque_range=self.torque_range,
+            static_torques=self.static_torques,
+            domain=self.domain,
+            settings=self.settings.exploration,
+            explored=explored,
+        )
+        yield from self.exploration.steps(self.settings.samples)
