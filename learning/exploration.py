@@ -10,8 +10,21 @@ from numpy.typing import NDArray
 from learning.arm import Arm
 from learning.exploration_loop import Exploration, Learner, StaticTorques
 from learning.exploration_settings import ExplorationSettings
+from learning.exploration_step import Counts, ExplorationStep
 from learning.explored_share import ExploredShare
 from learning.targets import DirectionTargets, Domain, GoalTargets, Target, TargetSource
+
+__all__ = [
+    "ConstrainedDirectionSampling",
+    "ConstrainedGoalBabbling",
+    "Counts",
+    "DirectionSampling",
+    "Exploration",
+    "ExplorationSettings",
+    "ExplorationStep",
+    "GoalBabbling",
+    "MotorBabbling",
+]
 
 Vector = NDArray[np.float64]
 
