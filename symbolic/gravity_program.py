@@ -13,6 +13,12 @@ WAVE_COST = 20
 """What a sine or cosine costs, in additions and multiplications."""
 
 
+Term = tuple[float, tuple[str, ...]]
+"""A factor times a product of at most two variables; without variables a constant."""
+
+Terms = tuple[Term, ...]
+
+
 @dataclass(frozen=True)
 class Wave:
     """The statement ``name = function(frequency . q)``."""
@@ -24,10 +30,10 @@ class Wave:
 
 @dataclass(frozen=True)
 class Sum:
-    """The statement ``name = sum of factor * product of variables``, at most two variables each."""
+    """The statement ``name = sum of the terms``."""
 
     name: str
-    terms: tuple[tuple[float, tuple[str, ...]], ...]
+    terms: Terms
 
 
 @dataclass(frozen=True)
@@ -66,7 +72,7 @@ class GravityProgram:
     n: int
     waves: tuple[Wave, ...]
     sums: tuple[Sum, ...]
-    torques: tuple[tuple[tuple[float, tuple[str, ...]], ...], ...]
+    torques: tuple[Terms, ...]
 
     @property
     def cost(self) -> int:
@@ -92,7 +98,7 @@ def expanded_program(potential: TrigonometricPolynomial) -> GravityProgram:
     """Write the gradient of a potential with numbers as coefficients, frequency by frequency."""
     f = potential.to_float()
     builder = _Builder()
-    torques: list[list[_Term]] = [[] for _ in range(f.n)]
+    torques: list[list[Term]] = [[] for _ in range(f.n)]
     for index, (k, a, b) in enumerate(zip(f.frequencies.tolist(), f.cos, f.sin, strict=True)):
         wave = []
         if b:
@@ -112,10 +118,10 @@ def recursion_program(chain: GravityChain) -> GravityProgram:
     builder = _Builder()
     n = chain.n
     children = [[j for j in range(n) if chain.parents[j] == i] for i in range(n)]
-    cos: list[_Term] = []
-    sin: list[_Term] = []
-    before: list[list[_Term]] = []
-    after: list[list[_Term]] = []
+    cos: list[Term] = []
+    sin: list[Term] = []
+    before: list[list[Term]] = []
+    after: list[list[Term]] = []
     for i in range(n):
         k = [int(i == j) for j in range(n)]
         cos.append((1.0, (builder.wave(f"cos{i + 1}", "cos", k),)))
@@ -132,8 +138,8 @@ def recursion_program(chain: GravityChain) -> GravityProgram:
             ]
         )
     # What a joint carries, seen from the frame that its parent's rotation leads to.
-    handed: list[list[_Term]] = [[]] * n
-    torques: list[list[_Term]] = [[] for _ in range(n)]
+    handed: list[list[Term]] = [[]] * n
+    torques: list[list[Term]] = [[] for _ in range(n)]
     for i in range(n - 1, -1, -1):
         u, v, z = (
             builder.sum([_constant(chain.moments[i, j]), *(handed[c][j] for c in children[i])])
@@ -146,15 +152,11 @@ def recursion_program(chain: GravityChain) -> GravityProgram:
     return builder.program(torques)
 
 
-# A factor times a product of variables; no variables: a constant.
-_Term = tuple[float, tuple[str, ...]]
-
-
-def _constant(value: float) -> _Term:
+def _constant(value: float) -> Term:
     return float(value), ()
 
 
-def _product(a: _Term, b: _Term, sign: float = 1.0) -> _Term:
+def _product(a: Term, b: Term, sign: float = 1.0) -> Term:
     return sign * a[0] * b[0], a[1] + b[1]
 
 
@@ -169,10 +171,12 @@ class _Builder:
         self.waves.append(Wave(name, function, tuple(k)))
         return name
 
-    def dot(self, factors: Iterable[float], terms: Iterable[_Term]) -> _Term:
-        return self.sum([(float(f) * x, names) for f, (x, names) in zip(factors, terms)])  # noqa: B905
+    def dot(self, factors: Iterable[float], terms: Iterable[Term]) -> Term:
+        return self.sum(
+            [(float(f) * x, names) for f, (x, names) in zip(factors, terms, strict=True)]
+        )
 
-    def sum(self, terms: Iterable[_Term]) -> _Term:
+    def sum(self, terms: Iterable[Term]) -> Term:
         """Return a term of at most one variable that stands for the sum."""
         merged = _merged(terms)
         if not merged:
@@ -183,13 +187,13 @@ class _Builder:
             return merged[0]
         return self.name_of(merged)
 
-    def name_of(self, terms: Iterable[_Term]) -> _Term:
+    def name_of(self, terms: Iterable[Term]) -> Term:
         """Add a statement for the sum and return its name as a term."""
         name = f"t{len(self.sums) + 1}"
         self.sums.append(Sum(name, tuple(terms)))
         return 1.0, (name,)
 
-    def program(self, torques: Iterable[Iterable[_Term]]) -> GravityProgram:
+    def program(self, torques: Iterable[Iterable[Term]]) -> GravityProgram:
         """Return the program without what no torque needs, names numbered through."""
         last = tuple(tuple(_merged(terms)) for terms in torques)
         needed = {name for terms in last for _, names in terms for name in names}
@@ -201,7 +205,7 @@ class _Builder:
         kept.reverse()
         new = {s.name: f"t{i + 1}" for i, s in enumerate(kept)}
 
-        def renamed(terms: Iterable[_Term]) -> tuple[_Term, ...]:
+        def renamed(terms: Iterable[Term]) -> Terms:
             return tuple((x, tuple(new.get(name, name) for name in names)) for x, names in terms)
 
         return GravityProgram(
@@ -212,7 +216,7 @@ class _Builder:
         )
 
 
-def _merged(terms: Iterable[_Term]) -> list[_Term]:
+def _merged(terms: Iterable[Term]) -> list[Term]:
     """Add up terms of the same variables and drop those that vanish."""
     total: dict[tuple[str, ...], float] = {}
     for factor, names in terms:

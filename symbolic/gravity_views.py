@@ -92,7 +92,10 @@ def latex_name(name: str) -> str:
 
 
 def gravity_sympy(
-    model: GravityModel, symbols: Sequence[sympy.Symbol] | None = None
+    model: GravityModel,
+    symbols: Sequence[sympy.Symbol] | None = None,
+    *,
+    exact: bool = True,
 ) -> sympy.Matrix:
     """Return the torque as a column of SymPy expressions.
 
@@ -102,11 +105,13 @@ def gravity_sympy(
         Any gravity model.
     symbols
         The joint angles, by default real symbols q1, q2, ..
+    exact
+        Whether numbers are the exact rationals that the floats of a robot stand for, or floats.
 
     Returns
     -------
     sympy.Matrix
-        Shape (n, 1) [N m]; coefficients are exact rationals or the tree's own expressions.
+        Shape (n, 1) [N m].
 
     Examples
     --------
@@ -115,7 +120,10 @@ def gravity_sympy(
     c2*g*m2*cos(q1 + q2)
     """
     q = tuple(symbols or sympy.symbols(f"q1:{model.n + 1}", real=True))
-    return sympy.Matrix([f.to_sympy(q) for f in model.components])
+    components = model.components
+    if not (exact or model.is_symbolic):
+        components = tuple(f.to_float() for f in components)
+    return sympy.Matrix([f.to_sympy(q) for f in components])
 
 
 def _polynomial_latex(f: TrigonometricPolynomial, names: Sequence[str]) -> str:
