@@ -59,9 +59,10 @@ def largest_value(
     values = value(points)
     order = np.argsort(-values, kind="stable")[:refined]
     best, at = float(values[order[0]]), points[order[0]]
-    if best <= 0.0 and values.min() == best:
+    spread = best - float(values.min())
+    if spread <= 0.0:  # constant, as far as can be seen
         return best, at
-    scale = 1.0 / max(abs(best), 1e-300)
+    scale = 1.0 / spread
     for start in points[order]:
         climb = scipy.optimize.minimize(
             lambda q: -scale * float(value(q[None, :])[0]),

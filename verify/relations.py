@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
@@ -16,6 +16,8 @@ from verify.counterexamples import largest_value, simplest_configuration
 from verify.proof import exact_potential, prove_relation
 from verify.verdict import Status, Verdict
 
+Array = NDArray[np.float64]
+
 FLOAT_NOISE = 1e-12
 """Relative size of what float evaluation of torques may be wrong by."""
 
@@ -23,7 +25,7 @@ FLOAT_NOISE = 1e-12
 def verify_relation(
     relation: SymmetryRelation,
     gravity: GravityModel,
-    tolerance: float = 1e-9,
+    tolerance: ArrayLike = 1e-9,
     *,
     claim: str | None = None,
 ) -> Verdict:
@@ -36,8 +38,9 @@ def verify_relation(
     gravity
         The true gravity torque.
     tolerance
-        Torque error that the claim is allowed [N m]. At 0 only a relation that is exactly true,
-        up to the rounding of its printed offset, passes.
+        Torque error that the claim is allowed [N m], one number or one per joint (then inf where
+        anything goes). At 0 only a relation that is exactly true, up to the rounding of its
+        printed offset, passes.
     claim
         Words for the verdict; by default the relation written out.
 
@@ -53,13 +56,13 @@ def verify_relation(
     ------
     InputError
         If relation and gravity differ in the number of joints, the tolerance is negative or not
-        finite, or the potential contains symbols.
+        a number, the potential contains symbols, or torque and potential contradict each other.
 
     Notes
     -----
     A learned, real A is bounded on the box |q_j| <= pi; its counterexamples are sought there.
-    Deterministic. Even a proof is checked against torques of the recursion along the chain,
-    which do not pass through the potential that the proof is about.
+    Deterministic. Even what is proved or bounded is checked against torques of the recursion
+    along the chain, which do not pass through the potential that the proof is about.
 
     References
     ----------
@@ -78,33 +81,37 @@ def verify_relation(
     n, potential = gravity.n, gravity.potential
     if relation.n != n:
         raise InputError("relation", "number of joints", relation.n, f"{n}, as the robot has")
-    if not (np.isfinite(tolerance) and tolerance >= 0.0):
-        raise InputError("verify_relation", "tolerance", tolerance, "a number >= 0 [Nm]")
     exact = exact_potential(potential)
+    noise = FLOAT_NOISE * float(exact.to_float().gradient_bound().max(initial=0.0))
+    allowed = _tolerances(tolerance, n)
+    if not potential.is_exact:
+        allowed = np.maximum(allowed, noise)
     words = describe_relation(relation) if claim is None else claim
     A, d, Y = relation.A, relation.d, relation.Y
     proof = prove_relation(A, d, Y, exact)
     integer = np.array_equal(A, np.round(A))
     bound = (relation_error_bound if integer else learned_map_bound)(A, d, Y, exact)
     worst = float(bound.max(initial=0.0))
-    noise = FLOAT_NOISE * float(exact.to_float().gradient_bound().max(initial=0.0))
-    allowed = tolerance if potential.is_exact else max(tolerance, noise)
-    judge = _ErrorOf(relation, gravity)
-    if proof.holds or worst <= allowed:
-        contradicted = judge.sampled() > max(worst, allowed) + 10 * noise
-        if not contradicted:
-            return Verdict(words, Status.PROVED if proof.holds else Status.BOUNDED, worst)
-    largest, q = largest_value(judge.value, n, gradient=judge.gradient)
+    judge = _Excess(relation, gravity, allowed)
+    if proof.holds or np.all(bound <= allowed):
+        excess = judge.sampled(bound)
+        if excess > 10 * noise:
+            raise InputError(
+                "gravity model", "difference of torque and potential", excess, "rounding errors"
+            )
+        return Verdict(words, Status.PROVED if proof.holds else Status.BOUNDED, worst)
+    _, q = largest_value(judge.value, n, gradient=judge.gradient)
+    largest = float(np.abs(judge.errors(q)).max(initial=0.0))
     if not _certified(relation, exact, q, allowed):
         return Verdict(words, Status.TESTED, largest)
-    simple = simplest_configuration(lambda x: judge.at(x) > allowed + 10 * noise, q)
+    simple = simplest_configuration(lambda x: judge.at(x) > 10 * noise, q)
     if not _certified(relation, exact, simple, allowed):
         simple = q
     return Verdict(words, Status.REFUTED, largest, simple)
 
 
 def verify_relations(
-    relations: Iterable[SymmetryRelation], gravity: GravityModel, tolerance: float = 1e-9
+    relations: Iterable[SymmetryRelation], gravity: GravityModel, tolerance: ArrayLike = 1e-9
 ) -> tuple[Verdict, ...]:
     """Judge relations one by one, numbered from 1 in the verdicts' claims."""
     return tuple(
@@ -129,7 +136,7 @@ def describe_relation(relation: SymmetryRelation) -> str:
     return ", ".join(parts + (flipped or ["tau' = tau"]))
 
 
-def _row(coefficients: NDArray[np.float64], offset: float) -> str:
+def _row(coefficients: Array, offset: float) -> str:
     text = ""
     for j, x in enumerate(coefficients):
         if x:
@@ -150,40 +157,46 @@ def _angle(value: float) -> str:
     return f"{value:.9g}"
 
 
-class _ErrorOf:
-    """Torque error of a relation as a function of the configuration."""
+class _Excess:
+    """By how much the torque error of a relation exceeds what is allowed, per configuration."""
 
-    def __init__(self, relation: SymmetryRelation, gravity: GravityModel) -> None:
-        self.relation, self.gravity = relation, gravity
+    def __init__(self, relation: SymmetryRelation, gravity: GravityModel, allowed: Array) -> None:
+        self.relation, self.gravity, self.allowed = relation, gravity, allowed
 
-    def errors(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def errors(self, q: Array) -> Array:
         image = self.gravity.torque(self.relation.configuration(q))
         return np.asarray(image - self.relation.torque(self.gravity.torque(q)))
 
-    def value(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.abs(self.errors(q)).max(axis=-1, initial=0.0)
+    def value(self, q: Array) -> Array:
+        return np.asarray((np.abs(self.errors(q)) - self.allowed).max(axis=-1))
 
-    def at(self, q: NDArray[np.float64]) -> float:
+    def at(self, q: Array) -> float:
         return float(self.value(q[None, :])[0])
 
-    def sampled(self) -> float:
+    def sampled(self, limits: Array) -> float:
         q = np.random.default_rng(0).uniform(-np.pi, np.pi, (32, self.gravity.n))
-        return float(self.value(q).max())
+        return float((np.abs(self.errors(q)) - limits).max())
 
-    def gradient(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def gradient(self, q: Array) -> Array:
         relation, gravity = self.relation, self.gravity
         error = self.errors(q)
-        joint = int(np.argmax(np.abs(error)))
+        joint = int(np.argmax(np.abs(error) - self.allowed))
         slope = gravity.stiffness(relation.configuration(q))[joint] @ relation.A
         slope = slope - relation.Y[joint] * gravity.stiffness(q)[joint]
         return np.asarray(np.sign(error[joint]) * slope)
 
 
+def _tolerances(tolerance: ArrayLike, n: int) -> Array:
+    values = np.asarray(tolerance, dtype=float)
+    if values.shape not in ((), (n,)) or np.isnan(values).any() or np.any(values < 0):
+        raise InputError(
+            "verify_relation", "tolerance", tolerance, f"a number >= 0 [Nm], or {n} of them"
+        )
+    return np.array(np.broadcast_to(values, (n,)))
+
+
 def _certified(
-    relation: SymmetryRelation,
-    potential: TrigonometricPolynomial,
-    q: NDArray[np.float64],
-    allowed: float,
+    relation: SymmetryRelation, potential: TrigonometricPolynomial, q: Array, allowed: Array
 ) -> bool:
     errors = certified_error(relation.A, relation.d, relation.Y, potential, q)
-    return bool(errors.max(initial=0.0) > allowed)
+    return bool(np.any(errors > allowed))

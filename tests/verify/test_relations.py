@@ -18,7 +18,7 @@ from verify.relations import describe_relation, verify_relation, verify_relation
 from verify.verdict import Status, all_passed
 
 FEW = settings(
-    max_examples=25, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
+    max_examples=15, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
 )
 TOLERANCE = 1e-9
 
@@ -119,7 +119,7 @@ def test_a_bound_above_the_tolerance_without_counterexample_is_only_tested(arms)
     verdict = verify_relation(near, arm.gravity, between)
     assert verdict.status is Status.TESTED
     assert verdict.passed
-    assert verdict.worst_error == strict.worst_error
+    assert verdict.worst_error == pytest.approx(strict.worst_error, rel=1e-9)
     assert verify_relation(near, arm.gravity, 2 * between).status is Status.BOUNDED
 
 
@@ -130,19 +130,30 @@ def test_a_learned_real_matrix_is_bounded_or_refuted(two_link, tolerance, status
     assert verdict.status == status
 
 
+def test_tolerances_may_differ_from_joint_to_joint(two_link):
+    near = SymmetryRelation(np.eye(2), [0.0, 1e-3], [1, 1])  # 6 mNm on both joints
+    assert verify_relation(near, two_link.gravity, [0.01, 0.01]).status is Status.BOUNDED
+    assert verify_relation(near, two_link.gravity, [np.inf, 0.01]).status is Status.BOUNDED
+    for tolerance in ([0.001, 0.01], [0.01, 0.001], [np.inf, 0.001]):
+        verdict = verify_relation(near, two_link.gravity, tolerance)
+        assert verdict.status is Status.REFUTED
+        assert pinocchio_error("2r", near, verdict.counterexample) > 0.001
+
+
 def test_the_same_question_has_the_same_answer(two_link):
     lie = SymmetryRelation([[1, 0], [0, 1]], [0.3, 0.0], [1, -1])
     first, second = (verify_relation(lie, two_link.gravity, TOLERANCE) for _ in range(2))
     assert first.to_json() == second.to_json()
 
 
-def test_a_model_whose_torque_is_not_that_of_its_potential_is_not_trusted(two_link, monkeypatch):
+def test_a_gravity_model_that_contradicts_itself_is_refused(two_link, monkeypatch):
     broken = GravityModel(load_robot("2r"))
     torque = broken.torque
     monkeypatch.setattr(broken, "torque", lambda q: torque(q) + np.array([0.0, 0.01]))
     flip = SymmetryRelation(np.eye(2), [np.pi, 0], [-1, -1])
     assert verify_relation(flip, two_link.gravity).status is Status.PROVED
-    assert verify_relation(flip, broken).status is not Status.PROVED
+    with pytest.raises(InputError, match=r"difference of torque and potential is 0\.02"):
+        verify_relation(flip, broken)
 
 
 def test_float_potentials_are_judged_up_to_rounding(two_link, monkeypatch):
@@ -159,7 +170,7 @@ def test_relations_are_written_readably():
     assert describe_relation(still) == "q1' = 0, tau1' = -tau1"
 
 
-@pytest.mark.parametrize("tolerance", [-1.0, np.nan, np.inf])
+@pytest.mark.parametrize("tolerance", [-1.0, np.nan, [1.0, 1.0, 1.0], [0.1, np.nan]])
 def test_impossible_tolerances_are_refused(two_link, tolerance):
     with pytest.raises(InputError, match="tolerance"):
         verify_relation(two_link.group[0], two_link.gravity, tolerance)

@@ -1,0 +1,114 @@
+"""Judge of a relations file: every relation in it, and what it says of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
+from symbolic.relations import SymmetryGroup, SymmetryRelation
+from symbolic.symmetries import primary_symmetries
+from verify.relation_files import RelationsFile
+from verify.relations import describe_relation, verify_relation, verify_relations
+from verify.verdict import Status, Verdict
+
+ROUNDED_BOUND = 1e-9
+"""What a printed bound may be below the true one by rounding, relative and in N m."""
+
+
+def verify_relations_file(
+    file: RelationsFile, gravity: GravityModel, tolerance: float = 1e-9
+) -> tuple[Verdict, ...]:
+    """Judge every claim of a relations file.
+
+    Parameters
+    ----------
+    file
+        From `load_relations`.
+    gravity
+        The true gravity torque of the arm it is about.
+    tolerance
+        Torque error that each relation is allowed [N m].
+
+    Returns
+    -------
+    tuple of Verdict
+        One per relation; then, where the file says so, one each on the relations it calls exact,
+        on the bounds it gives, and on its list being the complete group.
+
+    Raises
+    ------
+    InputError
+        If the file is about another number of joints or other joint names.
+
+    Notes
+    -----
+    A claimed bound is refuted only by a configuration that exceeds it. Where every relation is
+    proved, an ``order`` is the claim that no relation is missing, judged against the exact group;
+    otherwise (approximate or learned relations) it is the claim that they form a group.
+    """
+    if file.n != gravity.n:
+        raise InputError(file.source, "number of joints", file.n, f"{gravity.n}, as the robot has")
+    if file.joint_names is not None and file.joint_names != tuple(gravity.joint_names):
+        raise InputError(
+            file.source, "joints", list(file.joint_names), f"{list(gravity.joint_names)}"
+        )
+    verdicts = list(verify_relations(file.relations, gravity, tolerance))
+    if any(relation.exact for relation in file):
+        verdicts.append(_exactness(file, gravity))
+    if any(np.isfinite(relation.bound).any() for relation in file):
+        verdicts.append(_bounds(file, gravity))
+    if file.order is not None:
+        exact = all(verdict.status is Status.PROVED for verdict in verdicts[: len(file)])
+        verdicts.append(_completeness(file, gravity) if exact else _closure(file))
+    return tuple(verdicts)
+
+
+def _exactness(file: RelationsFile, gravity: GravityModel) -> Verdict:
+    claim = "the relations called exact are exact"
+    worst = 0.0
+    for number, relation in enumerate(file, 1):
+        if relation.exact:
+            verdict = verify_relation(relation, gravity, 0.0)
+            worst = max(worst, verdict.worst_error)
+            if verdict.status is not Status.PROVED:
+                words = f"{claim} (relation {number}: {describe_relation(relation)})"
+                return Verdict(words, Status.REFUTED, worst, verdict.counterexample)
+    return Verdict(claim, Status.PROVED, worst)
+
+
+def _bounds(file: RelationsFile, gravity: GravityModel) -> Verdict:
+    claim, status, worst = "no torque error exceeds the bound given for it", Status.BOUNDED, 0.0
+    for number, relation in enumerate(file, 1):
+        claimed = np.where(np.isfinite(relation.bound), relation.bound, np.inf)
+        allowed = claimed * (1 + ROUNDED_BOUND) + ROUNDED_BOUND
+        verdict = verify_relation(relation, gravity, allowed)
+        worst = max(worst, verdict.worst_error)
+        if verdict.status is Status.REFUTED:
+            words = f"{claim} (relation {number}: {describe_relation(relation)})"
+            return Verdict(words, Status.REFUTED, worst, verdict.counterexample)
+        if verdict.status is Status.TESTED:
+            status = Status.TESTED
+    return Verdict(claim, status, worst)
+
+
+def _completeness(file: RelationsFile, gravity: GravityModel) -> Verdict:
+    group = primary_symmetries(gravity.potential)
+    free = ~np.any(gravity.potential.frequencies != 0, axis=0)
+    listed = [
+        SymmetryRelation(r.A, r.d, np.where(free, 1.0, r.Y), group.basis) for r in file.relations
+    ]
+    found = sum(relation in group for relation in listed)
+    distinct = len({group.index(r) for r in listed if r in group})
+    claim = f"the {len(file)} relations listed are all that there are ({group.order})"
+    whole = found == len(file) and distinct == len(file) == group.order
+    return Verdict(claim, Status.PROVED if whole else Status.REFUTED, 0.0)
+
+
+def _closure(file: RelationsFile) -> Verdict:
+    claim = f"the {len(file)} relations listed form a group"
+    try:
+        closed = SymmetryGroup(file.relations).is_closed
+    except InputError:  # a matrix that does not map y = B q to itself
+        closed = False
+    return Verdict(claim, Status.TESTED if closed else Status.REFUTED, 0.0)
