@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import scipy.optimize
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Vector = NDArray[np.float64]
 
@@ -20,6 +20,7 @@ def largest_value(
     n: int,
     *,
     gradient: Callable[[Vector], Vector] | None = None,
+    limits: ArrayLike | None = None,
     samples: int = 512,
     refined: int = 4,
     seed: int = 0,
@@ -34,10 +35,12 @@ def largest_value(
         Number of joints.
     gradient
         Its gradient at one configuration, (n,) -> (n,); by differences where it is None.
+    limits
+        Search between these angles, (n, 2) [rad]; one turn around zero by default.
     samples
         Number of random starting points.
     refined
-        How many of the best are climbed from (L-BFGS-B within one turn of each joint).
+        How many of the best are climbed from (L-BFGS-B).
     seed
         Seed of the starting points: the same call finds the same point.
 
@@ -46,7 +49,7 @@ def largest_value(
     value : float
         The largest value found; a lower bound of the supremum.
     q : (n,) array
-        Where it was found, in [-pi, pi].
+        Where it was found, within the limits.
 
     Examples
     --------
@@ -55,7 +58,9 @@ def largest_value(
     True
     """
     rng = np.random.default_rng(seed)
-    points = np.concatenate([np.zeros((1, n)), rng.uniform(-np.pi, np.pi, (samples, n))])
+    box = np.array([[-np.pi, np.pi]] * n if limits is None else limits, dtype=float)
+    middle = np.clip(np.zeros((1, n)), box[:, 0], box[:, 1])
+    points = np.concatenate([middle, rng.uniform(box[:, 0], box[:, 1], (samples, n))])
     values = value(points)
     order = np.argsort(-values, kind="stable")[:refined]
     best, at = float(values[order[0]]), points[order[0]]
@@ -69,7 +74,7 @@ def largest_value(
             start,
             jac=None if gradient is None else lambda q: -scale * gradient(q),
             method="L-BFGS-B",
-            bounds=[(-np.pi, np.pi)] * n,
+            bounds=box,
         )
         here = float(value(climb.x[None, :])[0])
         if here > best:

@@ -1,0 +1,129 @@
+"""Errors of learned models are measured as defined, and the worst one is found."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
+from symbolic.robots import load_robot
+from verify.models import torque_rmse, verify_model
+from verify.targets import dense_targets, grid_targets, scattered_targets
+from verify.verdict import Status, all_passed
+
+
+class Learned:
+    """The truth plus a known error."""
+
+    def __init__(self, gravity, error):
+        self.gravity, self.error = gravity, error
+
+    def predict(self, q):
+        return self.gravity.torque(q) + self.error(q)
+
+
+def test_the_truth_passes_everything(two_link):
+    judgement = verify_model(
+        two_link.gravity.torque,
+        two_link.gravity,
+        group=two_link.group,
+        tolerance=1e-9,
+        largest_tolerance=1e-9,
+    )
+    assert judgement.rmse == 0.0
+    assert judgement.equivariance_error < 1e-12
+    assert len(judgement.verdicts) == 3
+    assert all_passed(judgement.verdicts)
+
+
+def test_the_rmse_is_that_of_its_definition(two_link):
+    model = Learned(two_link.gravity, lambda q: np.stack([np.cos(q[:, 0]), 0 * q[:, 1]], axis=1))
+    grid = grid_targets([0.0, 0.0], [[np.pi / 2, -np.pi / 2], [0, np.pi]], (6, 11))
+    judgement = verify_model(model, two_link.gravity, targets=[grid], tolerance=0.01)
+    found = judgement.targets[1]
+    assert (found.name, found.count) == ("6 x 11 grid", 66)
+    expected = np.mean(np.cos(np.linspace(0, np.pi / 2, 6)) ** 2)
+    assert found.rmse == pytest.approx(np.sqrt(expected / 2))
+    assert found.rmse_by_joint == pytest.approx([np.sqrt(expected), 0.0])
+    assert judgement.rmse == pytest.approx(0.5, abs=0.02)  # mean of cos^2 / 2 over the torus
+    assert judgement.verdicts[0].status is Status.REFUTED
+    assert judgement.verdicts[0].counterexample is None
+
+
+def test_a_narrow_error_is_found_by_climbing(two_link):
+    peak = np.array([0.4, -1.1])
+
+    def bump(q):
+        distance = np.sum((q - peak) ** 2, axis=1)
+        return np.stack([0 * distance, np.exp(-distance)], axis=1)
+
+    judgement = verify_model(
+        Learned(two_link.gravity, bump), two_link.gravity, largest_tolerance=0.5
+    )
+    assert np.allclose(judgement.worst_configuration, peak, atol=1e-3)
+    assert judgement.largest_error[1] == pytest.approx(1.0, abs=1e-6)
+    verdict = judgement.verdicts[0]
+    assert verdict.status is Status.REFUTED
+    assert np.array_equal(verdict.counterexample, judgement.worst_configuration)
+
+
+def test_limits_keep_the_search_inside(two_link):
+    limits = np.array([[-1.0, 0.5], [0.2, 0.3]])
+    model = Learned(two_link.gravity, lambda q: q)
+    judgement = verify_model(model, two_link.gravity, limits=limits)
+    assert judgement.worst_configuration[0] == pytest.approx(-1.0)
+    assert judgement.largest_error[0] == pytest.approx(1.0)
+
+
+def test_a_model_that_breaks_a_symmetry_is_caught(two_link):
+    model = Learned(two_link.gravity, lambda q: 0.1 * np.sin(q))
+    judgement = verify_model(model, two_link.gravity, group=two_link.group)
+    assert judgement.equivariance_error > 0.1
+    verdict = judgement.verdicts[-1]
+    assert verdict.status is Status.REFUTED
+    q = verdict.counterexample
+    found = max(
+        np.abs(model.predict(r.configuration(q)[None]) - r.torque(model.predict(q[None]))).max()
+        for r in two_link.group
+    )
+    assert found == pytest.approx(judgement.equivariance_error)
+
+
+def test_free_joints_do_not_count(upright):
+    gravity = GravityModel(upright)
+    assert gravity.free_joints == ("joint1",)
+    model = Learned(gravity, lambda q: np.array([100.0, 0.1]) + 0 * q)
+    judgement = verify_model(model, gravity, tolerance=0.11, largest_tolerance=0.11)
+    assert judgement.rmse == pytest.approx(0.1)
+    assert judgement.rmse_by_joint == pytest.approx([100.0, 0.1])
+    assert all_passed(judgement.verdicts)
+
+
+def test_rmse_of_nothing_is_zero():
+    assert torque_rmse(np.zeros((3, 2)), [False, False]) == 0.0
+
+
+def test_dense_sets_are_the_same_every_time_and_within_limits():
+    robot = load_robot("2r")
+    first, second = dense_targets(robot.limits), dense_targets(robot.limits)
+    assert np.array_equal(first.q, second.q)
+    assert len(first.q) >= 1500
+    narrow = dense_targets([[0.1, 0.2], [-50.0, 50.0]]).q
+    assert np.all((narrow[:, 0] >= 0.1) & (narrow[:, 0] <= 0.2))
+    assert np.all(np.abs(narrow[:, 1]) <= np.pi)
+    assert scattered_targets(robot.limits, 84, seed=1).q.shape == (84, 2)
+    with pytest.raises(InputError, match="limits"):
+        dense_targets([[1.0, 0.0]])
+
+
+@pytest.mark.parametrize(
+    ("predict", "message"),
+    [
+        (lambda q: q[:, :1], "shape of predictions"),
+        (lambda q: q * np.nan, "prediction at q = .* is not finite"),
+    ],
+)
+def test_unusable_predictions_are_refused(two_link, predict, message):
+    with pytest.raises(InputError, match=message):
+        verify_model(predict, two_link.gravity)
