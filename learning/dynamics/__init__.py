@@ -1,0 +1,1 @@
+"""Equations of motion of an arm and the two engines that integrate them."""

@@ -1,0 +1,69 @@
+"""The decorator of every compiled function of the simulator."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from numba import config, njit
+
+# Sums may be reordered and fused, but NaN and infinity keep their meaning: they are tested for.
+_FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """Compile a function with numba, caching the result on disk beside its source.
+
+    Parameters
+    ----------
+    function
+        A function of scalars and arrays that creates no array: workspaces come in from outside.
+
+    Returns
+    -------
+    numba dispatcher
+        The compiled function.
+
+    Notes
+    -----
+    Numba renews a cached function only when the function's own file changes, though it contains
+    the code of the functions it calls from other files. The cache is therefore kept in a folder
+    named for the contents of all files of the package; where that folder cannot be written,
+    numba's own place is used. References are not counted (``_nrt=False``): counting the arrays of
+    a call costs as much as the dynamics of a two-joint arm, and nothing is created or freed.
+    """
+    return _compiled(function, "never")
+
+
+def kernel_part(function: Callable[..., Any]) -> Any:
+    """Compile a function as a part of every kernel that calls it, which saves the calls.
+
+    For functions that are called once or twice in the innermost loops; see `kernel`.
+    """
+    return _compiled(function, "always")
+
+
+def _compiled(function: Callable[..., Any], inline: str) -> Any:
+    folder = Path(function.__code__.co_filename).resolve().parent
+    previous = config.CACHE_DIR
+    if os.access(folder, os.W_OK):
+        config.CACHE_DIR = str(folder / "__pycache__" / f"kernels-{_fingerprint(folder)}")
+    try:
+        return njit(cache=True, fastmath=_FASTMATH, error_model="numpy", inline=inline, _nrt=False)(
+            function
+        )
+    finally:
+        config.CACHE_DIR = previous
+
+
+@cache
+def _fingerprint(folder: Path) -> str:
+    """Return a short hash of the Python files of a folder."""
+    sha = hashlib.sha256()
+    for path in sorted(folder.glob("*.py")):
+        sha.update(path.read_bytes())
+    return sha.hexdigest()[:16]

@@ -1,0 +1,120 @@
+"""What the compiled integrator is given: the arm it moves, the rules of rest, the workspace."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.dynamics.chain import Chain
+from learning.dynamics.compiled_equations import WORKSPACE_COLUMNS
+
+RESTED = 0
+LIMIT = 1
+ELAPSED = 2
+
+
+class Plant(NamedTuple):
+    """An arm with its friction and limits.
+
+    Attributes
+    ----------
+    parents, kinds, links, gravity
+        The arrays of a `Chain`.
+    damping : (n,) array
+        Viscous damping [N m s/rad].
+    coulomb : (n,) array
+        Coulomb friction [N m].
+    limits : (n, 2) array
+        Joint limits [rad].
+    anchor : (n, n) array
+        ``s D V V'`` for an orthonormal basis V (n, k) of the directions gravity does not feel,
+        damping D and a scale s; zero where there are none. See `learning.dynamics.free_directions`.
+    """
+
+    parents: NDArray[np.int64]
+    kinds: NDArray[np.int64]
+    links: NDArray[np.float64]
+    gravity: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    coulomb: NDArray[np.float64]
+    limits: NDArray[np.float64]
+    anchor: NDArray[np.float64]
+
+
+class Rest(NamedTuple):
+    """When an arm counts as at rest, and how exactly its motion is followed.
+
+    Attributes
+    ----------
+    velocity, acceleration : float
+        Largest joint velocity [rad/s] and acceleration [rad/s^2]; a negative velocity: never.
+    dwell : float
+        How long both must hold [s].
+    finish : bool
+        Whether to end at the equilibrium the motion converges to.
+    tolerance : float
+        Local error allowed per step [rad].
+    time_tolerance : float
+        The same as time [s]: what the arm moves meanwhile at its speed is allowed, if that is less.
+    """
+
+    velocity: float
+    acceleration: float
+    dwell: float
+    finish: bool
+    tolerance: float
+    time_tolerance: float
+
+
+class Scratch(NamedTuple):
+    """Arrays the integrator writes to; their contents mean nothing between calls.
+
+    Attributes
+    ----------
+    sweep : (n + 1, WORKSPACE_COLUMNS) array
+        Workspace of the equations of motion.
+    mass, stiffness : (n, n) arrays
+        At the beginning of a step.
+    mass_half, stiffness_half : (n, n) arrays
+        In the middle of a step.
+    factor : (n, n) array
+        Matrix of a linear system and its factors.
+    vectors : (VECTORS, n) array
+        Further vectors, one per row.
+    """
+
+    sweep: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    mass_half: NDArray[np.float64]
+    stiffness_half: NDArray[np.float64]
+    factor: NDArray[np.float64]
+    vectors: NDArray[np.float64]
+
+
+VECTORS = 16
+
+
+def new_plant(
+    chain: Chain, damping: NDArray, coulomb: NDArray, limits: NDArray, anchor: NDArray
+) -> Plant:
+    """Put a plant together; the arrays are copied."""
+    return Plant(
+        *chain.arrays,
+        *(np.array(x, dtype=float, order="C") for x in (damping, coulomb, limits, anchor)),
+    )
+
+
+def new_scratch(n: int) -> Scratch:
+    """Create the workspace for an arm of n joints."""
+    return Scratch(
+        sweep=np.zeros((n + 1, WORKSPACE_COLUMNS)),
+        mass=np.zeros((n, n)),
+        stiffness=np.zeros((n, n)),
+        mass_half=np.zeros((n, n)),
+        stiffness_half=np.zeros((n, n)),
+        factor=np.zeros((n, n)),
+        vectors=np.zeros((VECTORS, n)),
+    )
