@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from symbolic.errors import InputError
 
 Coefficients = NDArray[Any]
 
+_WHERE = "trigonometric polynomial"
+
 
 def is_zero(value: Any) -> bool:
     """Say whether a float, rational or SymPy coefficient is exactly zero."""
@@ -21,32 +24,59 @@ def is_zero(value: Any) -> bool:
     return bool(value == 0)
 
 
-def coefficient_array(values: ArrayLike, m: int) -> Coefficients:
-    """Return ``m`` coefficients as an array of finite floats or of objects.
+def coefficient_arrays(m: int | None, *values: ArrayLike) -> tuple[Coefficients, ...]:
+    """Return arrays of coefficients, all of one kind.
+
+    Parameters
+    ----------
+    m
+        Length that they must have; None for any.
+    values
+        Numbers of any kind. SymPy expressions anywhere make all of them SymPy expressions, else
+        floats make all of them floats, else all are exact rationals; only an array of integers
+        that are not objects counts as floats.
 
     Raises
     ------
     InputError
-        For another number of them, or for infinite or undefined floats.
+        For another length, for complex, infinite or undefined numbers, or for no numbers.
     """
-    array = np.asarray(values)
-    if array.shape != (m,):
+    arrays = [np.asarray(x) for x in values]
+    for array in arrays:
+        if array.ndim != 1 or (m is not None and len(array) != m):
+            raise InputError(_WHERE, "shape of coefficients", array.shape, f"({m or 'm'},)")
+        if array.dtype.kind not in "biufO":
+            raise InputError(_WHERE, "coefficients", array.tolist(), "real numbers")
+    if not any(array.dtype == object for array in arrays):
+        floats = tuple(array.astype(np.float64) for array in arrays)
+    else:
+        entries = [x for array in arrays for x in array.tolist()]
+        if any(isinstance(x, sympy.Basic) for x in entries):
+            return tuple(_converted(array, to_sympy) for array in arrays)
+        if not any(isinstance(x, float) for x in entries):
+            return tuple(_converted(array, _to_rational) for array in arrays)
+        floats = tuple(_converted(array, to_float).astype(np.float64) for array in arrays)
+    for array in floats:
+        if not np.all(np.isfinite(array)):
+            raise InputError(_WHERE, "coefficients", array.tolist(), "finite numbers")
+    return floats
+
+
+def _converted(array: NDArray[Any], convert: Callable[[Any], Any]) -> Coefficients:
+    out = np.empty(len(array), dtype=object)
+    out[:] = [convert(x) for x in array.tolist()]
+    return out
+
+
+def _to_rational(value: Any) -> fmpq:
+    if isinstance(value, fmpq):
+        return value
+    try:
+        return fmpq(value)
+    except TypeError:
         raise InputError(
-            "trigonometric polynomial", "shape of coefficients", array.shape, f"({m},)"
-        )
-    if array.dtype == object:
-        return array
-    array = array.astype(np.float64)
-    if not np.all(np.isfinite(array)):
-        raise InputError("trigonometric polynomial", "coefficients", array, "finite numbers")
-    return array
-
-
-def integer_like(value: int, like: Coefficients) -> Any:
-    """Return an integer as a coefficient of the same kind as those in ``like``."""
-    if like.dtype != object:
-        return float(value)
-    return sympy.Integer(value) if any(isinstance(x, sympy.Basic) for x in like) else fmpq(value)
+            _WHERE, "coefficient", value, "a float, an exact rational or a SymPy expression"
+        ) from None
 
 
 def to_float(value: Any) -> float:
@@ -63,7 +93,7 @@ def to_float(value: Any) -> float:
         return float(value)
     except TypeError:
         raise InputError(
-            "trigonometric polynomial", "coefficient", value, "a number (substitute the symbols)"
+            _WHERE, "coefficient", value, "a number (substitute the symbols)"
         ) from None
 
 

@@ -14,13 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from symbolic.coefficients import (
     Coefficients,
-    coefficient_array,
-    integer_like,
-    is_zero,
+    coefficient_arrays,
     to_float,
     to_sympy,
 )
 from symbolic.errors import InputError
+from symbolic.frequencies import folded, frequency_rows
 from symbolic.trigonometric_text import polynomial_text
 
 
@@ -64,21 +63,15 @@ class TrigonometricPolynomial:
         sin: ArrayLike,
         names: tuple[str, ...] | None = None,
     ) -> None:
-        k = np.asarray(frequencies)
-        if k.ndim != 2:
-            raise InputError("trigonometric polynomial", "shape of frequencies", k.shape, "(m, n)")
-        if k.size and not np.all(k == np.round(k.astype(float))):
-            raise InputError("trigonometric polynomial", "frequencies", k, "integers")
-        k = k.astype(np.int64)
-        a, b = (coefficient_array(x, len(k)) for x in (cos, sin))
-        if a.dtype != b.dtype:
-            a, b = a.astype(object), b.astype(object)
-        k, a, b = _folded(k, a, b)
+        k = frequency_rows(frequencies)
+        k, a, b = folded(k, *coefficient_arrays(len(k), cos, sin))
         object.__setattr__(self, "frequencies", k)
         object.__setattr__(self, "cos", a)
         object.__setattr__(self, "sin", b)
         if names is None:
             names = tuple(f"q{i + 1}" for i in range(k.shape[1]))
+        if len(names) != k.shape[1]:
+            raise InputError("trigonometric polynomial", "names", names, f"{k.shape[1]} names")
         object.__setattr__(self, "names", tuple(names))
 
     @property
@@ -154,12 +147,16 @@ class TrigonometricPolynomial:
 
     def derivative(self, variable: int) -> TrigonometricPolynomial:
         """Return the derivative with respect to variable number ``variable``."""
-        factor = [integer_like(int(x), self.cos) for x in self.frequencies[:, variable]]
-        a = np.array([f * b for f, b in zip(factor, self.sin, strict=True)], dtype=self.cos.dtype)
-        b = np.array([-f * a for f, a in zip(factor, self.cos, strict=True)], dtype=self.cos.dtype)
-        return TrigonometricPolynomial(self.frequencies, a, b, self.names)
+        _, _, factor = coefficient_arrays(
+            None, self.cos, self.sin, self.frequencies[:, variable].astype(object)
+        )
+        return TrigonometricPolynomial(
+            self.frequencies, factor * self.sin, -factor * self.cos, self.names
+        )
 
     def __add__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        if not isinstance(other, TrigonometricPolynomial):
+            return NotImplemented
         if other.n != self.n:
             raise InputError("sum", "number of variables", other.n, str(self.n))
         return TrigonometricPolynomial(
@@ -173,15 +170,13 @@ class TrigonometricPolynomial:
         return self * -1
 
     def __sub__(self, other: TrigonometricPolynomial) -> TrigonometricPolynomial:
+        if not isinstance(other, TrigonometricPolynomial):
+            return NotImplemented
         return self + (-other)
 
     def __mul__(self, factor: Any) -> TrigonometricPolynomial:
-        return TrigonometricPolynomial(
-            self.frequencies,
-            np.array([x * factor for x in self.cos], dtype=self.cos.dtype),
-            np.array([x * factor for x in self.sin], dtype=self.cos.dtype),
-            self.names,
-        )
+        a, b, one = coefficient_arrays(None, self.cos, self.sin, [factor])
+        return TrigonometricPolynomial(self.frequencies, a * one[0], b * one[0], self.names)
 
     __rmul__ = __mul__
 
@@ -204,8 +199,11 @@ class TrigonometricPolynomial:
             raise InputError(
                 "substitution", "A", matrix.tolist(), f"an integer matrix {self.n} x {self.n}"
             )
+        offset = np.asarray(d, dtype=float)
+        if offset.shape != (self.n,) or not np.all(np.isfinite(offset)):
+            raise InputError("substitution", "d", offset.tolist(), f"{self.n} finite angles [rad]")
         k, a, b = self._numeric
-        phase = k @ np.asarray(d, dtype=float)
+        phase = k @ offset
         c, s = np.cos(phase), np.sin(phase)
         return TrigonometricPolynomial(k @ matrix, a * c + b * s, b * c - a * s, self.names)
 
@@ -263,37 +261,3 @@ class TrigonometricPolynomial:
             np.array([convert(x) for x in self.sin], dtype=dtype),
             self.names,
         )
-
-
-def _folded(
-    k: NDArray[np.int64], a: Coefficients, b: Coefficients
-) -> tuple[NDArray[np.int64], Coefficients, Coefficients]:
-    """Fold -k onto k, add equal rows, drop exact zeros; keep the order of first appearance."""
-    if not len(k):
-        return k, a, b
-    leading = np.zeros(len(k), dtype=np.int64)
-    for column in k.T[::-1]:
-        leading = np.where(column != 0, column, leading)
-    flip = leading < 0
-    if flip.any():
-        k = np.where(flip[:, None], -k, k)
-        b = b.copy()
-        b[flip] = -b[flip]
-    if a.dtype == object:
-        keep = np.array([not (is_zero(x) and is_zero(y)) for x, y in zip(a, b, strict=True)])
-    else:
-        keep = (a != 0) | (b != 0)
-    if not keep.all():
-        k, a, b = k[keep], a[keep], b[keep]
-    index: dict[bytes, int] = {}
-    place = np.array(
-        [index.setdefault(row.tobytes(), len(index)) for row in np.ascontiguousarray(k)]
-    )
-    if len(index) == len(k):
-        return k, a, b
-    first = np.array([int(np.argmax(place == j)) for j in range(len(index))])
-    new_a, new_b = a[first].copy(), b[first].copy()
-    for i, j in enumerate(place):
-        if i != first[j]:
-            new_a[j], new_b[j] = new_a[j] + a[i], new_b[j] + b[i]
-    return _folded(k[first], new_a, new_b)
