@@ -15,6 +15,13 @@ from symbolic.relations import wrap
 
 Array = NDArray[np.float64]
 
+SMALLEST_TORQUE = 1e-3
+"""First torque tried at every joint [N m]."""
+VISIBLE_MOTION = 0.1
+"""A joint that has moved this far has shown its torque scale [rad]."""
+MOST_DOUBLINGS = 40
+TRIES_PER_RAY = 8
+
 
 @dataclass(frozen=True)
 class DiscoverySettings:
@@ -27,7 +34,7 @@ class DiscoverySettings:
     patience : int
         A torque is left early when this many profiles in a row bring nothing new.
     babbling : int
-        Torques tried at first to learn which torques the arm can hold (the SST).
+        Torques tried at first to learn which the arm can hold (the SST).
     away_from_zero : float
         Every target component is at least this share of the joint's torque scale: signs of
         smaller ones would say nothing.
@@ -37,9 +44,9 @@ class DiscoverySettings:
         Distributions of the profiles.
     """
 
-    profiles_per_torque: int = 12
-    patience: int = 6
-    babbling: int = 40
+    profiles_per_torque: int = 16
+    patience: int = 8
+    babbling: int = 120
     away_from_zero: float = 0.05
     same_angle: float = 1e-3
     profile: ProfileShape = field(default_factory=ProfileShape)
@@ -73,70 +80,70 @@ class ProfilePlayed:
     new: bool
 
 
-class TorqueScale:
-    """What the arm can hold, found by trying: a growing box of torques around the home torque.
-
-    Knows nothing but outcomes. The first torque is minute; it grows until the arm visibly moves,
-    then on until as many tries fail as succeed.
-    """
-
-    def __init__(self, n: int) -> None:
-        self.scale = np.zeros(n)
-
-    def seen(self, outcome: Outcome) -> None:
-        """Take in one outcome."""
-        if outcome.kind is OutcomeKind.SETTLED:
-            self.scale = np.maximum(self.scale, np.abs(outcome.torque))
-
-
-def babble(
-    arm: ProfileArm, rng: np.random.Generator, tries: int, active: ArrayLike | None = None
-) -> Iterator[Outcome]:
-    """Try torques of growing size to learn which the arm can hold; yield every outcome.
+def babble(arm: ProfileArm, rng: np.random.Generator, tries: int) -> Iterator[Outcome]:
+    """Find out which torques the arm can hold, knowing nothing: yield every outcome.
 
     Parameters
     ----------
     arm
-        Any arm.
+        Any arm, at home.
     rng
         Source of randomness.
     tries
-        Number of torques after the arm first moved visibly.
-    active : (n,) array of bool, optional
-        Joints to drive; torque zero elsewhere.
+        Torques applied after the scale of each joint has been found.
 
     Yields
     ------
     Outcome
         Settled or inadmissible, in order.
+
+    Notes
+    -----
+    Joint by joint, a minute torque is doubled until the arm visibly moves: that is the scale. A
+    joint that does not come to rest even under the minute torque has no stiffness (a vertical
+    first axis) and is driven no further. Then random rays from the home torque are followed,
+    each to where the arm gives way: in growing steps, then by bisection. So the set of static
+    torques becomes known up to its boundary.
     """
-    home = np.asarray(arm.q, dtype=float)
-    n = len(home)
-    mask = np.ones(n) if active is None else np.asarray(active, dtype=float)
-    size = np.full(n, 1e-3) * mask
-    for joint in np.flatnonzero(mask):
-        # the joint's own stiffness sets the scale: double until it moves by a tenth of a radian
-        for _ in range(40):
-            torque = np.zeros(n)
-            torque[joint] = size[joint]
-            before = np.asarray(arm.q, dtype=float)
-            outcome = arm.apply(torque)
+    n = len(arm.q)
+    size = np.zeros(n)
+    for joint in range(n):
+        for outcome in _find_scale(arm, joint, size):
             yield outcome
-            moved = abs(float(wrap(outcome.q - before)[joint]))
-            if outcome.kind is not OutcomeKind.SETTLED or moved > 0.1:
+    left = tries
+    while left > 0 and size.any():
+        direction = rng.normal(size=n)
+        direction *= size / np.abs(direction).max()
+        held, failed, share = 0.0, np.inf, 1.0
+        for _ in range(min(left, TRIES_PER_RAY)):
+            outcome = arm.apply(share * direction)
+            yield outcome
+            left -= 1
+            if outcome.kind is OutcomeKind.SETTLED:
+                held = share
+                size = np.maximum(size, np.abs(outcome.torque))
+            else:
+                failed = share
+            if failed - held < 0.05 * held:
                 break
-            size[joint] *= 2
-        arm.go_home()
-    grown = 0
-    for _ in range(tries):
-        outcome = arm.apply(rng.uniform(-1, 1, n) * size)
+            share = 1.5 * held if np.isinf(failed) else 0.5 * (held + failed)
+
+
+def _find_scale(arm: ProfileArm, joint: int, size: Array) -> Iterator[Outcome]:
+    """Set ``size[joint]`` to a torque that visibly moves the joint; leave 0 where none holds."""
+    torque = np.zeros(len(size))
+    torque[joint] = SMALLEST_TORQUE
+    for _ in range(MOST_DOUBLINGS):
+        before = np.array(arm.q, dtype=float)
+        outcome = arm.apply(torque.copy())
         yield outcome
-        if outcome.kind is OutcomeKind.SETTLED:
-            grown += 1
-            # grow where the arm held a large share of what was tried
-            size = np.where(np.abs(outcome.torque) > 0.5 * size, size * 1.25, size)
-        else:
-            size = size * 0.95
+        if outcome.kind is not OutcomeKind.SETTLED or outcome.torque[joint] == 0:
+            break
+        size[joint] = torque[joint]
+        if abs(float(wrap(outcome.q - before)[joint])) > VISIBLE_MOTION:
+            break
+        torque *= 2
+    arm.go_home()
 
 
 def discover(

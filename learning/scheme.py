@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
 from learning.discovery import DiscoverySettings, babble, choose_target, discover
-from learning.exploration import (
-    ConstrainedDirectionSampling,
-    ExplorationSettings,
-    ExplorationStep,
-    Learner,
-)
+from learning.exploration import ConstrainedDirectionSampling
+from learning.exploration_loop import Learner
+from learning.exploration_settings import ExplorationSettings
+from learning.exploration_step import ExplorationStep
 from learning.explored_share import ExploredShare
 from learning.identification import identify
 from learning.learned_symmetries import LearnedSymmetries
