@@ -8,5 +8,70 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, NoSnap, RobotName
+from isotorque.cli.options import Json, NoSnap, Quiet, RobotName
 from isotorque.cli.output import emit_json, say
+
+
+def derive(
+    robot: RobotName,
+    latex: Annotated[bool, typer.Option("--latex", help="Print LaTeX.")] = False,
+    sympy: Annotated[bool, typer.Option("--sympy", help="Print a SymPy expression.")] = False,
+    c: Annotated[
+        Path | None, typer.Option("--c", metavar="FILE", help="Write C source.", show_default=False)
+    ] = None,
+    casadi: Annotated[
+        Path | None,
+        typer.Option(
+            "--casadi", metavar="FILE", help="Save a CasADi function.", show_default=False
+        ),
+    ] = None,
+    no_snap: NoSnap = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Derive the gravity torque, checked against Pinocchio every time."""
+    from isotorque.cli.files import write_whole
+    from symbolic.gravity import GravityModel
+    from symbolic.gravity_c import gravity_c
+    from symbolic.gravity_casadi import gravity_casadi
+    from symbolic.gravity_views import gravity_latex, gravity_sympy, gravity_text
+    from symbolic.robots import load_robot
+
+    loaded = load_robot(robot, snap=not no_snap)
+    start = time.perf_counter()
+    gravity = GravityModel(loaded)
+    seconds = time.perf_counter() - start
+    if c is not None:
+        write_whole(c, gravity_c(gravity))
+        say(f"C source: {c}", quiet=quiet or json)
+    if casadi is not None:
+        write_whole(casadi, gravity_casadi(gravity).serialize())
+        say(
+            f"CasADi function (read it with casadi.Function.deserialize): {casadi}",
+            quiet=quiet or json,
+        )
+    if json:
+        potential = gravity.significant_potential.to_float()
+        emit_json(
+            {
+                "robot": loaded.name,
+                "joints": gravity.joint_names,
+                "free_joints": gravity.free_joints,
+                "potential": [
+                    {"k": k, "cos": a, "sin": b}
+                    for k, a, b in zip(
+                        potential.frequencies.tolist(), potential.cos, potential.sin, strict=True
+                    )
+                ],
+                "snap_bound": loaded.snap_bound,
+                "max_error_vs_pinocchio": gravity.max_error_vs_pinocchio,
+                "seconds": seconds,
+            }
+        )
+    elif latex:
+        print(gravity_latex(gravity))
+    elif sympy:
+        print(gravity_sympy(gravity))
+    else:
+        print(gravity_text(gravity))
+        say(f"largest difference from Pinocchio: {gravity.max_error_vs_pinocchio:.3g} N m", quiet)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, NoSnap, RobotName, numbers
+from isotorque.cli.options import Json, NoSnap, Quiet, RobotName, numbers
 from isotorque.cli.output import emit_json, row
 
 
@@ -23,6 +23,7 @@ def domain(
     ] = None,
     no_snap: NoSnap = False,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Describe a fundamental domain: exactly one configuration of each symmetric set."""
     from symbolic.domain import FundamentalDomain
@@ -47,7 +48,10 @@ def domain(
             }
         )
         return
-    print(f"{loaded.name}: one of {group.order} equal parts, volume {bcts.volume:.6g} rad^{group.rank}")
+    print(
+        f"{loaded.name}: one of {group.order} equal parts, "
+        f"volume {bcts.volume:.6g} rad^{group.rank}"
+    )
     print(f"  y = B q with B = {group.basis.tolist()}")
     for *a, b in bcts.halfspaces:
         print(f"  {row(a)} . y <= {b:.6g}")

@@ -6,12 +6,14 @@ import os
 import sys
 from typing import NoReturn
 
-import click
 import typer
 
 from isotorque.cli import derive, domain, robots, simulate, symmetries, verify
 from isotorque.cli import run as run_command
 from symbolic.errors import InputError
+
+# typer may bring click along under a private name: take the class from typer's public one
+_ClickException: type[Exception] = typer.BadParameter.__mro__[2]
 
 app = typer.Typer(
     name="isotorque",
@@ -44,16 +46,17 @@ def status(arguments: list[str]) -> int:
     try:
         code = app(args=arguments, prog_name="isotorque", standalone_mode=False)
         sys.stdout.flush()
-    except click.exceptions.NoArgsIsHelpError as error:
-        print(error.format_message())
-        return 2
-    except click.UsageError as error:
-        return _refuse(" ".join(error.format_message().split()))
+    except _ClickException as error:
+        message = error.format_message()  # type: ignore[attr-defined]
+        if type(error).__name__ == "NoArgsIsHelpError":
+            print(message)
+            return 2
+        return _refuse(" ".join(message.split()))
     except InputError as error:
         return _refuse(str(error))
-    except click.exceptions.Exit as error:
+    except typer.Exit as error:
         return error.exit_code
-    except (KeyboardInterrupt, click.Abort):
+    except (KeyboardInterrupt, typer.Abort):
         print("interrupted: everything recorded so far is kept", file=sys.stderr)
         return 130
     except BrokenPipeError:  # the reader of our output went away, e.g. `| head`

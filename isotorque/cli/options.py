@@ -24,6 +24,19 @@ NoSnap = Annotated[
     bool,
     typer.Option("--no-snap", help="Keep angles that are within 1e-5 rad of a multiple of pi/2."),
 ]
+Physics = Annotated[
+    str,
+    typer.Option("--physics", metavar="MODE", help="open_loop, geared or guided."),
+]
+Engine = Annotated[
+    str, typer.Option("--engine", metavar="ENGINE", help="compiled or pinocchio: same physics.")
+]
+Settle = Annotated[
+    str,
+    typer.Option(
+        "--settle", metavar="MODE", help="finished: at the equilibrium; raw: at the criterion."
+    ),
+]
 Out = Annotated[Path, typer.Option("--out", help="Directory for all results.", show_default=False)]
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from isotorque.cli.options import Json
+from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json
 
 
-def robots(json: Json = False) -> None:
+def robots(json: Json = False, quiet: Quiet = False) -> None:
     """List the built-in robots."""
     from symbolic.robots import builtin_robots
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, NoSnap, RobotName
+from isotorque.cli.options import Json, NoSnap, Quiet, RobotName
 from isotorque.cli.output import emit_json, row
 
 
@@ -23,6 +23,7 @@ def symmetries(
     ] = 0.0,
     no_snap: NoSnap = False,
     json: Json = False,
+    quiet: Quiet = False,
 ) -> None:
     """Derive every map q -> A q + d under which gravity torques only change signs."""
     from symbolic.approximate_symmetries import maximal_groups
@@ -37,7 +38,7 @@ def symmetries(
     group = primary_symmetries(gravity.potential, tolerance)
     seconds = time.perf_counter() - start
     snapped = [
-        {"where": s.where, "what": s.what, "before": s.before, "after": s.after, "effect": s.effect}
+        {"joint": s.joint, "what": s.what, "before": s.before, "after": s.after, "effect": s.effect}
         for s in loaded.snaps
     ]
     document = relations_document(group, gravity.joint_names) | {
@@ -54,9 +55,11 @@ def symmetries(
     if json:
         emit_json(document)
         return
-    print(f"{loaded.name}: {group.order} primary symmetries, rank {group.rank} of {loaded.n} joints")
+    print(
+        f"{loaded.name}: {group.order} primary symmetries, rank {group.rank} of {loaded.n} joints"
+    )
     for snap in loaded.snaps:
-        print(f"  snapped: {snap.where}: {snap.what} {snap.before} -> {snap.after}")
+        print(f"  snapped: {snap.joint}: {snap.what} {snap.before} -> {snap.after}")
     for direction in group.free_directions:
         print(f"  free direction: {row(direction)}")
     for relation in group:

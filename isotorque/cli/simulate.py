@@ -1,0 +1,54 @@
+"""``isotorque simulate``: apply a torque to a simulated arm and wait."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from isotorque.cli.options import Engine, Json, NoSnap, Physics, Quiet, RobotName, Settle, numbers
+from isotorque.cli.output import emit_json, row
+
+
+def simulate(
+    robot: RobotName,
+    torque: Annotated[
+        str,
+        typer.Option("--torque", metavar="T1,T2,..", help="Torque [N m].", show_default=False),
+    ],
+    start: Annotated[
+        str | None,
+        typer.Option(
+            "--from", metavar="Q1,Q2,..", help="Start, at rest [rad].", show_default="home"
+        ),
+    ] = None,
+    physics: Physics = "open_loop",
+    engine: Engine = "compiled",
+    settle: Settle = "finished",
+    no_snap: NoSnap = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Apply a constant torque and wait until the arm settles, hits a limit or time is up."""
+    from learning.simulation import SimulatedArm
+    from symbolic.robots import load_robot
+
+    loaded = load_robot(robot, snap=not no_snap)
+    tau = numbers(torque, "--torque", loaded.n)
+    q0 = None if start is None else numbers(start, "--from", loaded.n)
+    arm = SimulatedArm(loaded, physics=physics, engine=engine, settle=settle, q0=q0)
+    outcome = arm.apply(tau)
+    if json:
+        emit_json(
+            {
+                "robot": loaded.name,
+                "physics": physics,
+                "engine": engine,
+                "outcome": str(outcome.kind),
+                "q": outcome.q,
+                "torque": outcome.torque,
+                "seconds_simulated": outcome.seconds,
+            }
+        )
+        return
+    print(f"{outcome.kind} at q = {row(outcome.q)} after {outcome.seconds:.3g} s")

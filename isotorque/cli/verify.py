@@ -1,0 +1,54 @@
+"""``isotorque verify``: judge relations, runs and models against the analytic truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from isotorque.cli.options import Json, NoSnap, Quiet
+from isotorque.cli.output import emit_json
+
+
+def verify(
+    what: Annotated[
+        Path,
+        typer.Argument(metavar="WHAT", help="A relations file (JSON).", show_default=False),
+    ],
+    robot: Annotated[
+        str, typer.Option("--robot", metavar="ROBOT", help="Robot it is about.", show_default=False)
+    ],
+    tolerance: Annotated[
+        float, typer.Option("--tolerance", metavar="NM", help="Torque error allowed [N m].")
+    ] = 1e-9,
+    report: Annotated[
+        Path | None,
+        typer.Option("--report", metavar="FILE.html", help="Write a report.", show_default=False),
+    ] = None,
+    no_snap: NoSnap = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> int:
+    """Judge what was learned or claimed: proof, bound, or a counterexample."""
+    from symbolic.gravity import GravityModel
+    from symbolic.robots import load_robot
+    from verify.claims import verify_relations_file
+    from verify.relation_files import load_relations
+
+    gravity = GravityModel(load_robot(robot, snap=not no_snap))
+    verdicts = verify_relations_file(load_relations(what), gravity, tolerance)
+    passed = all(verdict.passed for verdict in verdicts)
+    if report is not None:
+        from verify.report import verdicts_page
+
+        from isotorque.cli.files import write_whole
+
+        write_whole(report, verdicts_page(f"{what.name} against {gravity.name}", verdicts))
+    if json:
+        emit_json({"passed": passed, "verdicts": [verdict.to_json() for verdict in verdicts]})
+    else:
+        for verdict in verdicts:
+            print(verdict)
+        print("passed" if passed else "failed")
+    return 0 if passed else 1
