@@ -99,7 +99,7 @@ class LocalLinearMap(RegressorMixin, BaseEstimator):
     >>> q = rng.uniform(-np.pi, np.pi, (4000, 1))
     >>> pendulum = LocalLinearMap(radius=0.3, inner_iterations=None, kernel_width=1.5)
     >>> pendulum = pendulum.partial_fit(q, 5.0 * np.cos(q))
-    >>> bool(np.abs(pendulum.predict(q) - 5.0 * np.cos(q)).max() < 0.02)
+    >>> bool(np.abs(pendulum.predict(q) - 5.0 * np.cos(q)).max() < 0.05)
     True
     """
 

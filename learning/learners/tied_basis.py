@@ -1,0 +1,121 @@
+"""Tied basis: local linear features, summed over a symmetry group so that they are equivariant.
+
+A prototype stands for its whole orbit. With relations ``y -> A y + d``, ``tau -> Y tau``, local
+offset ``x_gi = L (A_g y + d_g - p_i) / d`` and kernel ``h``, the estimate of joint j is
+
+    tau_j(y) = sum_g Y_gj sum_i h(|x_gi|) (o_ij + W_ij . x_gi)  /  sum_g sum_i h(|x_gi|),
+
+linear in (o, W). Moving y by a relation permutes the copies and multiplies by one sign: every such
+function has the group's symmetry exactly, whatever its parameters. Periodic images are summed as
+well, so it is smooth on the torus. Joints with the same column of Y share their features.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from learning.learners.cell_grid import find_near, scan_all
+
+
+@njit(cache=True)
+def copies_of(symmetries, q, images):
+    """Wrapped coordinates of all symmetric copies of q (n,), into ``images`` (G, r)."""
+    basis, A_sat, d_sat = symmetries
+    order, rank, _ = A_sat.shape
+    y = np.zeros(rank)
+    for i in range(rank):
+        for j in range(q.size):
+            y[i] += basis[i, j] * q[j]
+    for g in range(order):
+        for i in range(rank):
+            value = d_sat[g, i]
+            for j in range(rank):
+                value += A_sat[g, i, j] * y[j]
+            images[g, i] = value - 2 * np.pi * np.floor(value / (2 * np.pi) + 0.5)
+
+
+@njit(cache=True)
+def least_distance(grid, counts, images, work):
+    """Squared distance from an orbit (G, r) to the nearest prototype; infinity if none is near."""
+    least = np.inf
+    for g in range(images.shape[0]):
+        least = min(
+            least, find_near(grid, counts[0], images[g], work.found, work.offset, work.squared)[1]
+        )
+    return least
+
+
+@njit(cache=True)
+def tied_features(grid, counts, images, signs, radius, kernel, work, features):
+    """Features of one configuration, given its copies ``images`` (G, r).
+
+    Parameters
+    ----------
+    grid, counts
+        Cell list of the prototypes and [prototypes, entries].
+    images : (G, r) array
+        All copies of the configuration.
+    signs : (c, G) array
+        Sign of every copy, for each group of joints that share their signs.
+    radius, kernel : float
+        Unit of the offsets and width of the kernel [rad].
+    work : Scratch
+        Scratch.
+    features : (c, M (1 + r)) array
+        Result; per prototype the offset first.
+    """
+    rank = images.shape[1]
+    features[:] = 0.0
+    total = 0.0
+    scale = -1.0 / (kernel * kernel)
+    reference = 0.0
+    near = False
+    for attempt in range(2):
+        limit = -1.0
+        if attempt == 1:
+            # Nothing within reach of any kernel: the nearest prototypes answer alone.
+            reference = np.inf
+            for g in range(images.shape[0]):
+                reference = min(
+                    reference,
+                    scan_all(
+                        grid, counts[0], images[g], -1.0, work.found, work.offset, work.squared
+                    )[1],
+                )
+            limit = reference + grid.search_radius * grid.search_radius
+        for g in range(images.shape[0]):
+            if attempt == 0:
+                found, _ = find_near(
+                    grid, counts[0], images[g], work.found, work.offset, work.squared
+                )
+            else:
+                found, _ = scan_all(
+                    grid, counts[0], images[g], limit, work.found, work.offset, work.squared
+                )
+            near = near or found > 0
+            for e in range(found):
+                weight = np.exp((work.squared[e] - reference) * scale)
+                total += weight
+                column = work.found[e] * (1 + rank)
+                for c in range(signs.shape[0]):
+                    signed = signs[c, g] * weight
+                    features[c, column] += signed
+                    for k in range(rank):
+                        features[c, column + 1 + k] += signed * work.offset[e, k] / radius
+        if near:
+            break
+    if total > 0.0:
+        features /= total
+
+
+@njit(cache=True)
+def tied_features_batch(grid, counts, symmetries, signs, q, radius, kernel, work, result):
+    """Features of configurations q (m, n), into ``result`` (c, m, M (1 + r))."""
+    images = np.empty((symmetries[1].shape[0], symmetries[1].shape[1]))
+    row = np.empty((signs.shape[0], result.shape[2]))
+    for s in range(q.shape[0]):
+        copies_of(symmetries, q[s], images)
+        tied_features(grid, counts, images, signs, radius, kernel, work, row)
+        for c in range(signs.shape[0]):
+            result[c, s] = row[c]
