@@ -204,3 +204,44 @@ def planar_arm(n: int) -> KinematicTree:
         levers=np.array([[c, zero, zero] for c in centre], dtype=object),
         gravity=np.array([zero, zero, -g], dtype=object),
     )
+
+
+def human_arm() -> KinematicTree:
+    """Return the paper's 3R arm, a simplified human one, in SymPy symbols.
+
+    Returns
+    -------
+    KinematicTree
+        Joint 1 rolls about the horizontal x axis, joint 2 is perpendicular to it, joint 3 parallel
+        to joint 2. Positive symbols: ``m1``, ``c1``, ``l1`` mass, centre of mass and length of the
+        upper arm, ``m2``, ``c2`` mass and centre of mass of forearm and hand, and ``g``.
+
+    Notes
+    -----
+    ``U = g cos q1 ((m1 c1 + m2 l1) sin q2 + m2 c2 sin(q2 + q3))``. The built-in ``3r`` has an upper
+    arm that is balanced on the shoulder (c1 = 0), 5 kg in the hand and l1 = c2 = 0.25 m.
+
+    References
+    ----------
+    The project's paper, Fig. 9; the masses are inferred from its torque ranges.
+
+    Examples
+    --------
+    >>> human_arm().axes[0]
+    array([1, 0, 0], dtype=object)
+    """
+    arm = planar_arm(2)
+    zero, one = sympy.Integer(0), sympy.Integer(1)
+    eye = np.array([[one if i == j else zero for j in range(3)] for i in range(3)], dtype=object)
+    roll = np.array([one, zero, zero], dtype=object)
+    nothing = np.array([zero, zero, zero], dtype=object)
+    return KinematicTree(
+        joint_names=("q1", "q2", "q3"),
+        parents=(-1, 0, 1),
+        rotations=np.array([eye, *arm.rotations], dtype=object),
+        translations=np.array([nothing, *arm.translations], dtype=object),
+        axes=np.array([roll, *arm.axes], dtype=object),
+        masses=np.array([zero, *arm.masses], dtype=object),
+        levers=np.array([nothing, *arm.levers], dtype=object),
+        gravity=arm.gravity,
+    )
