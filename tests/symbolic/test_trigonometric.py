@@ -60,8 +60,7 @@ def number(c):
     if isinstance(c, fmpq):
         return mpmath.mpf(int(c.p)) / int(c.q)
     if isinstance(c, sympy.Basic):
-        exact = sympy.nsimplify(c.subs(X, sympy.Rational(1, 3)))
-        return mpmath.mpf(int(exact.p)) / int(exact.q)
+        return mpmath.mpmathify(sympy.N(c.subs(X, sympy.Rational(1, 3)), 30))
     return mpmath.mpf(float(c))
 
 
