@@ -78,8 +78,9 @@ class SimulatedArm:
     does not feel (a vertical first axis) nothing has stiffness: the torque commanded there is
     replaced by zero, and noise is left out.
 
-    In ``finished`` mode a settled arm always is at a stable equilibrium; where the settle rule is
-    met near an unstable one, the arm is waited for until it has left it.
+    Without Coulomb friction a settled arm is always near a stable equilibrium (at it, in
+    ``finished`` mode); where the settle rule is met near an unstable one, the arm is waited for
+    until it has left.
 
     Examples
     --------
@@ -111,7 +112,7 @@ class SimulatedArm:
         self.engine = choice(EngineName, robot.name, "engine", engine)
         self.rule = rule or SettleRule(mode=choice(SettleMode, robot.name, "settle", settle))
         self.noise = noise or MeasurementNoise()
-        equations = new_equations(robot.model, EngineName.COMPILED)
+        equations = new_equations(self.engine, robot.model)
         assembly = assemble(robot, equations, self.physics, damping, coulomb, limits, home)
         self._body = assembly.body
         self._home = assembly.home

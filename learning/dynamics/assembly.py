@@ -77,6 +77,7 @@ def assemble(
         coulomb=_coulomb(robot, free, physics, coulomb),
         limits=chosen_limits,
         anchor=free.anchor(chosen_damping),
+        nudge=free.nudge(),
     )
     return Assembly(body, free, _home(robot, equations, free, chosen_limits, physics, home))
 

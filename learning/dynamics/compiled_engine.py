@@ -11,7 +11,17 @@ from learning.dynamics.compiled_motion import follow, move, move_each
 from learning.dynamics.compiled_step import ACCELERATION, acceleration_here, evaluate_here
 from learning.dynamics.engine import Body, Motion, Motions, Path
 from learning.dynamics.equations import Array
-from learning.dynamics.plant import ELAPSED, LIMIT, RESTED, Rest, new_plant, new_scratch
+from learning.dynamics.plant import (
+    AT_EQUILIBRIUM,
+    CONVERGING,
+    ELAPSED,
+    LIMIT,
+    RESTED,
+    WHERE_IT_IS,
+    Rest,
+    new_plant,
+    new_scratch,
+)
 from learning.physics import SettleMode, SettleRule
 
 _KINDS = {
@@ -19,6 +29,7 @@ _KINDS = {
     LIMIT: OutcomeKind.LIMIT,
     ELAPSED: OutcomeKind.TIMEOUT,
 }
+_ENDINGS = {SettleMode.FINISHED: AT_EQUILIBRIUM, SettleMode.RAW: CONVERGING}
 
 
 class CompiledEngine:
@@ -40,14 +51,12 @@ class CompiledEngine:
 
     def __init__(self, model: pin.Model, body: Body, rule: SettleRule) -> None:
         self.equations = CompiledEquations(model)
-        self._plant = new_plant(
-            self.equations.chain, body.damping, body.coulomb, body.limits, body.anchor
-        )
+        self._plant = new_plant(self.equations.chain, body)
         self._rest = Rest(
             rule.velocity,
             rule.acceleration,
             rule.dwell,
-            rule.mode is SettleMode.FINISHED and not body.coulomb.any(),
+            WHERE_IT_IS if body.coulomb.any() else _ENDINGS[rule.mode],
             rule.tolerance,
             rule.time_tolerance,
         )

@@ -13,10 +13,7 @@ from learning.dynamics.compiled_step import (
     evaluate_here,
 )
 from learning.dynamics.kernel import kernel
-
-RESIDUAL = 1e-9  # [N m]
-_ITERATIONS = 6
-_CONTRACTION = 0.25
+from learning.dynamics.step_control import CONTRACTION, NEWTON_STEPS, RESIDUAL
 
 
 @kernel
@@ -31,22 +28,24 @@ def _newton_factors(plant, scratch):
 
 
 @kernel
-def finish(plant, q, v, torque, scratch):
-    """Move q to the equilibrium that the nearly finished motion converges to.
+def finish(plant, q, v, torque, moves, scratch):
+    """Look for the equilibrium that the nearly finished motion converges to.
 
     Parameters
     ----------
     plant, scratch
         `Plant` and `Scratch`; the equations have been evaluated at (q, v).
     q, v : (n,) arrays
-        State at the end of the motion; replaced by the equilibrium and zero on success.
+        State at the end of the motion.
     torque : (n,) array
-        The torque that is applied.
+        The torque that is applied [N m].
+    moves : bool
+        Whether to replace q and v by the equilibrium and zero, if there is one.
 
     Returns
     -------
     bool
-        Whether there is such an equilibrium. If not, q and v are as before.
+        Whether there is such an equilibrium.
 
     Notes
     -----
@@ -71,7 +70,7 @@ def finish(plant, q, v, torque, scratch):
         trial[i] = q[i]
         at_rest[i] = 0.0
     allowed = 1e300
-    for k in range(_ITERATIONS):
+    for k in range(NEWTON_STEPS):
         if not _newton_factors(plant, scratch):
             return False
         worst = 0.0
@@ -83,14 +82,14 @@ def finish(plant, q, v, torque, scratch):
                 for j in range(n):
                     step[i] += plant.anchor[i, j] * momentum[j]
         if k > 0 and worst <= RESIDUAL:
-            return _accept(plant, q, v, trial)
+            return _accept(plant, q, v, trial, moves)
         solve(scratch.factor, vectors[PIVOTS], step)
         length = 0.0
         for i in range(n):
             length = max(length, abs(step[i]))
         if not length <= allowed:
             return False
-        allowed = _CONTRACTION * length
+        allowed = CONTRACTION * length
         for i in range(n):
             trial[i] += step[i]
         evaluate_here(plant, trial, at_rest, scratch)
@@ -98,12 +97,13 @@ def finish(plant, q, v, torque, scratch):
 
 
 @kernel
-def _accept(plant, q, v, trial):
+def _accept(plant, q, v, trial, moves):
     """Take the equilibrium over, unless a joint limit lies before it."""
     for i in range(q.shape[0]):
         if not plant.limits[i, 0] <= trial[i] <= plant.limits[i, 1]:
             return False
-    for i in range(q.shape[0]):
-        q[i] = trial[i]
-        v[i] = 0.0
+    if moves:
+        for i in range(q.shape[0]):
+            q[i] = trial[i]
+            v[i] = 0.0
     return True

@@ -9,20 +9,24 @@ from learning.dynamics.compiled_limits import crossing, stop_at
 from learning.dynamics.compiled_step import (
     ACCELERATION,
     Q_NEXT,
+    TORQUE,
     V_NEXT,
     acceleration_here,
     evaluate_here,
     try_step,
 )
 from learning.dynamics.kernel import kernel
-from learning.dynamics.plant import ELAPSED, LIMIT, RESTED
-
-_SHORTEST_STEP = 1e-6  # [s]
-_LONGEST_STEP = 2.0  # [s]
-_SAFETY = 0.9
-_GROWTH = 4.0
-_SHRINKAGE = 0.2
-_FLOOR = 1e-3  # of the tolerance: what is allowed however slow the arm
+from learning.dynamics.plant import AT_EQUILIBRIUM, ELAPSED, LIMIT, RESTED, WHERE_IT_IS
+from learning.dynamics.step_control import (
+    FIRST_STEP,
+    FLOOR,
+    GROWTH,
+    LONGEST_STEP,
+    SAFETY,
+    SHORTEST_STEP,
+    SHRINKAGE,
+    TIME_ROUNDING,
+)
 
 
 @kernel
@@ -60,11 +64,14 @@ def move(plant, rest, q, v, torque, duration, scratch):
     """
     vectors = scratch.vectors
     n = q.shape[0]
+    applied = vectors[TORQUE]
+    for i in range(n):
+        applied[i] = torque[i] + plant.nudge[i]
     evaluate_here(plant, q, v, scratch)
-    acceleration_here(plant, v, torque, scratch)
+    acceleration_here(plant, v, applied, scratch)
     fastest = _largest(vectors[ACCELERATION])
     # The error of a first step from here is about a h^2 / 4.
-    h = min(0.1, math.sqrt(2.0 * rest.tolerance / (fastest + 1e-9)))
+    h = min(FIRST_STEP, math.sqrt(2.0 * rest.tolerance / (fastest + 1e-9)))
     quiet_since = -1.0
     if _largest(v) <= rest.velocity and fastest <= rest.acceleration:
         quiet_since = 0.0
@@ -72,18 +79,18 @@ def move(plant, rest, q, v, torque, duration, scratch):
     steps = 0
     while True:
         left = duration - t
-        if left <= 1e-12:
+        if left <= TIME_ROUNDING:
             return ELAPSED, duration, steps
-        if quiet_since >= 0.0:
+        if quiet_since >= 0.0 and t - quiet_since < rest.dwell - TIME_ROUNDING:
             left = min(left, quiet_since + rest.dwell - t)
         step = min(h, left)
         steps += 1
-        error = try_step(plant, q, v, torque, step, scratch)
+        error = try_step(plant, q, v, applied, step, scratch)
         speed = max(_largest(v), _largest(vectors[V_NEXT]))
-        allowed = min(rest.tolerance, max(rest.time_tolerance * speed, _FLOOR * rest.tolerance))
+        allowed = min(rest.tolerance, max(rest.time_tolerance * speed, FLOOR * rest.tolerance))
         scale = math.sqrt(allowed / (error + 1e-300))
-        if not error <= allowed and step > _SHORTEST_STEP:
-            h = step * max(_SHRINKAGE, _SAFETY * scale)
+        if not error <= allowed and step > SHORTEST_STEP:
+            h = step * max(SHRINKAGE, SAFETY * scale)
             continue
         q_next = vectors[Q_NEXT]
         v_next = vectors[V_NEXT]
@@ -95,20 +102,21 @@ def move(plant, rest, q, v, torque, duration, scratch):
             q[i] = q_next[i]
             v[i] = v_next[i]
         t += step
-        grown = min(_LONGEST_STEP, step * min(_GROWTH, _SAFETY * scale))
+        grown = min(LONGEST_STEP, step * min(GROWTH, SAFETY * scale))
         h = grown if step == h else max(h, grown)
         evaluate_here(plant, q, v, scratch)
         if _largest(v) <= rest.velocity:
-            acceleration_here(plant, v, torque, scratch)
+            acceleration_here(plant, v, applied, scratch)
             if _largest(vectors[ACCELERATION]) <= rest.acceleration:
                 if quiet_since < 0.0:
                     quiet_since = t
-                if t - quiet_since >= rest.dwell - 1e-12:
-                    if not rest.finish or finish(plant, q, v, torque, scratch):
+                if t - quiet_since >= rest.dwell - TIME_ROUNDING:
+                    if rest.ending == WHERE_IT_IS:
+                        return RESTED, t, steps
+                    if finish(plant, q, v, torque, rest.ending == AT_EQUILIBRIUM, scratch):
                         return RESTED, t, steps
                     # At rest for now, but not near a stable equilibrium: it will move on.
                     evaluate_here(plant, q, v, scratch)
-                    quiet_since = t
                 continue
         quiet_since = -1.0
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 from learning.dynamics.compiled_equations import evaluate
+from learning.dynamics.compiled_friction import solve_with_friction
 from learning.dynamics.compiled_linear import factorise, multiply, solve
 from learning.dynamics.kernel import kernel
+from learning.dynamics.step_control import VELOCITY_WEIGHT
 
 # Rows of ``Scratch.vectors``.
 BIAS = 0
@@ -19,8 +23,10 @@ Q_NEXT = 8
 V_NEXT = 9
 ACCELERATION = 10
 Q_TRIAL = 11
-
-_VELOCITY_WEIGHT = 0.05  # [s]: how much an error in velocity counts as one in angle
+RIGHT_SIDE = 12
+FRICTION = 13
+GUESS = 14
+TORQUE = 15
 
 
 @kernel
@@ -42,9 +48,10 @@ def evaluate_here(plant, q, v, scratch):
 
 @kernel
 def next_velocity(plant, mass, bias, stiffness, torque, momentum, h, elastic, scratch, out):
-    """Solve ``(M + h D + h^2 K) v' = M v + h (torque - bias)`` for v'.
+    """Solve ``(M + h D + h^2 K) v' + h F Sign(v') = M v + h (torque - bias)`` for v'.
 
-    Returns False where that matrix is not positive definite. Without ``elastic``, K is left out.
+    ``out`` holds a guess of v' before. Returns False where the matrix is not positive definite.
+    Without ``elastic``, K is left out.
     """
     n = torque.shape[0]
     factor = scratch.factor
@@ -54,9 +61,24 @@ def next_velocity(plant, mass, bias, stiffness, torque, momentum, h, elastic, sc
         for j in range(i + 1):
             factor[i, j] = mass[i, j] + hh * stiffness[i, j]
         factor[i, i] += h * plant.damping[i]
-        out[i] = momentum[i] + h * (torque[i] - bias[i])
+    if plant.dry:
+        system = scratch.system
+        right = scratch.vectors[RIGHT_SIDE]
+        friction = scratch.vectors[FRICTION]
+        for i in range(n):
+            for j in range(i + 1):
+                system[i, j] = factor[i, j]
+            right[i] = momentum[i] + h * (torque[i] - bias[i])
+            friction[i] = h * plant.coulomb[i]
+        if not factorise(factor, pivots):
+            return False
+        guess = scratch.vectors[GUESS]
+        solve_with_friction(system, right, friction, factor, pivots, guess, out)
+        return True
     if not factorise(factor, pivots):
         return False
+    for i in range(n):
+        out[i] = momentum[i] + h * (torque[i] - bias[i])
     solve(factor, pivots, out)
     return True
 
@@ -96,6 +118,10 @@ def try_step(plant, q, v, torque, h, scratch):
     v_end = vectors[V_END]
     q_half = vectors[Q_HALF]
     multiply(scratch.mass, v, momentum)
+    for i in range(n):
+        v_full[i] = v[i]
+        v_half[i] = v[i]
+        v_end[i] = v[i]
     mass = scratch.mass
     stiffness = scratch.stiffness
     elastic = next_velocity(
@@ -131,22 +157,41 @@ def try_step(plant, q, v, torque, h, scratch):
     for i in range(n):
         q_full = q[i] + h * v_full[i]
         q_end = q_half[i] + half * v_end[i]
-        error = max(error, abs(q_end - q_full), _VELOCITY_WEIGHT * abs(v_end[i] - v_full[i]))
-        vectors[Q_NEXT, i] = 2.0 * q_end - q_full
-        vectors[V_NEXT, i] = 2.0 * v_end[i] - v_full[i]
+        error = max(error, abs(q_end - q_full), VELOCITY_WEIGHT * abs(v_end[i] - v_full[i]))
+        # A joint that stuck or turned round during the step is not smooth: nothing to extrapolate.
+        smooth = not plant.dry or (v_full[i] * v_end[i] > 0.0 and v_full[i] * v[i] > 0.0)
+        vectors[Q_NEXT, i] = 2.0 * q_end - q_full if smooth else q_end
+        vectors[V_NEXT, i] = 2.0 * v_end[i] - v_full[i] if smooth else v_end[i]
+        if plant.dry and vectors[V_NEXT, i] * v_end[i] <= 0.0:
+            vectors[V_NEXT, i] = v_end[i]
     return error
 
 
 @kernel
 def acceleration_here(plant, v, torque, scratch):
-    """Solve ``M a = torque - bias - D v`` at the beginning of a step, into row ACCELERATION."""
+    """Solve ``M a = torque - bias - D v - F Sign(v)`` at the beginning of a step.
+
+    The result stands in row ACCELERATION. Where a joint does not move, its friction resists the
+    acceleration: it sticks as long as that is enough.
+    """
     n = v.shape[0]
     factor = scratch.factor
     vectors = scratch.vectors
+    pivots = vectors[PIVOTS]
     a = vectors[ACCELERATION]
     for i in range(n):
         for j in range(i + 1):
             factor[i, j] = scratch.mass[i, j]
         a[i] = torque[i] - vectors[BIAS, i] - plant.damping[i] * v[i]
-    factorise(factor, vectors[PIVOTS])
-    solve(factor, vectors[PIVOTS], a)
+    if plant.dry:
+        right = vectors[RIGHT_SIDE]
+        friction = vectors[FRICTION]
+        for i in range(n):
+            moving = v[i] != 0.0
+            right[i] = a[i] - math.copysign(plant.coulomb[i], v[i]) if moving else a[i]
+            friction[i] = 0.0 if moving else plant.coulomb[i]
+            a[i] = 0.0
+        solve_with_friction(scratch.mass, right, friction, factor, pivots, vectors[GUESS], a)
+        return
+    factorise(factor, pivots)
+    solve(factor, pivots, a)

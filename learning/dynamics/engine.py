@@ -23,12 +23,15 @@ class Body:
         Joint limits [rad]; infinite where there is none.
     anchor : (n, n) array
         From `FreeDirections.anchor`.
+    nudge : (n,) array
+        From `FreeDirections.nudge` [N m].
     """
 
     damping: Array
     coulomb: Array
     limits: Array
     anchor: Array
+    nudge: Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -53,6 +53,15 @@ class FreeDirections:
         scale = max(float(self.stiffness_scale.max()), 1e-3) / max(float(damping.max()), 1e-9) ** 2
         return scale * damping[:, None] * (self.basis.T @ self.basis)
 
+    def nudge(self) -> Array:
+        """Return a disturbing torque (n,) of 1e-10 N m, nothing along free directions.
+
+        An arm balanced exactly on an unstable equilibrium stands on a knife's edge: rounding would
+        decide when and where it falls. This disturbance decides instead, on every engine and
+        machine alike; a settled arm is finished without it.
+        """
+        return 1e-10 * self.projector @ np.cos(np.arange(len(self.projector)))
+
     def active_stiffness(self, stiffness: Array) -> float:
         """Return the smallest eigenvalue of K on the active subspace, joints scaled to 1.
 

@@ -9,10 +9,15 @@ from numpy.typing import NDArray
 
 from learning.dynamics.chain import Chain
 from learning.dynamics.compiled_equations import WORKSPACE_COLUMNS
+from learning.dynamics.engine import Body
 
 RESTED = 0
 LIMIT = 1
 ELAPSED = 2
+
+WHERE_IT_IS = 0
+CONVERGING = 1
+AT_EQUILIBRIUM = 2
 
 
 class Plant(NamedTuple):
@@ -31,6 +36,10 @@ class Plant(NamedTuple):
     anchor : (n, n) array
         ``s D V V'`` for an orthonormal basis V (n, k) of the directions gravity does not feel,
         damping D and a scale s; zero where there are none. See `learning.dynamics.free_directions`.
+    nudge : (n,) array
+        Tiny disturbing torque [N m]: see `learning.dynamics.free_directions.FreeDirections.nudge`.
+    dry : bool
+        Whether there is any Coulomb friction.
     """
 
     parents: NDArray[np.int64]
@@ -41,6 +50,8 @@ class Plant(NamedTuple):
     coulomb: NDArray[np.float64]
     limits: NDArray[np.float64]
     anchor: NDArray[np.float64]
+    nudge: NDArray[np.float64]
+    dry: bool
 
 
 class Rest(NamedTuple):
@@ -52,8 +63,9 @@ class Rest(NamedTuple):
         Largest joint velocity [rad/s] and acceleration [rad/s^2]; a negative velocity: never.
     dwell : float
         How long both must hold [s].
-    finish : bool
-        Whether to end at the equilibrium the motion converges to.
+    ending : int
+        ``WHERE_IT_IS``: the settle rule is enough. ``CONVERGING``: a stable equilibrium must also
+        be near. ``AT_EQUILIBRIUM``: likewise, and the arm is moved there.
     tolerance : float
         Local error allowed per step [rad].
     time_tolerance : float
@@ -63,7 +75,7 @@ class Rest(NamedTuple):
     velocity: float
     acceleration: float
     dwell: float
-    finish: bool
+    ending: int
     tolerance: float
     time_tolerance: float
 
@@ -79,8 +91,8 @@ class Scratch(NamedTuple):
         At the beginning of a step.
     mass_half, stiffness_half : (n, n) arrays
         In the middle of a step.
-    factor : (n, n) array
-        Matrix of a linear system and its factors.
+    system, factor : (n, n) arrays
+        Matrix of a linear system, and its factors.
     vectors : (VECTORS, n) array
         Further vectors, one per row.
     """
@@ -90,20 +102,24 @@ class Scratch(NamedTuple):
     stiffness: NDArray[np.float64]
     mass_half: NDArray[np.float64]
     stiffness_half: NDArray[np.float64]
+    system: NDArray[np.float64]
     factor: NDArray[np.float64]
     vectors: NDArray[np.float64]
 
 
-VECTORS = 16
+VECTORS = 20
 
 
-def new_plant(
-    chain: Chain, damping: NDArray, coulomb: NDArray, limits: NDArray, anchor: NDArray
-) -> Plant:
+def new_plant(chain: Chain, body: Body) -> Plant:
     """Put a plant together; the arrays are copied."""
     return Plant(
         *chain.arrays,
-        *(np.array(x, dtype=float, order="C") for x in (damping, coulomb, limits, anchor)),
+        np.array(body.damping, dtype=float),
+        np.array(body.coulomb, dtype=float),
+        np.array(body.limits, dtype=float, order="C"),
+        np.array(body.anchor, dtype=float, order="C"),
+        np.array(body.nudge, dtype=float),
+        bool(np.any(body.coulomb)),
     )
 
 
@@ -115,6 +131,7 @@ def new_scratch(n: int) -> Scratch:
         stiffness=np.zeros((n, n)),
         mass_half=np.zeros((n, n)),
         stiffness_half=np.zeros((n, n)),
+        system=np.zeros((n, n)),
         factor=np.zeros((n, n)),
         vectors=np.zeros((VECTORS, n)),
     )
