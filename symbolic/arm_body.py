@@ -15,12 +15,13 @@ from symbolic.kinematic_tree import KinematicTree
 
 Array = NDArray[np.float64]
 
-_BOUNDED = frozenset({"JointModelRX", "JointModelRY", "JointModelRZ", "JointModelRevoluteUnaligned"})
+_BOUNDED = frozenset(
+    {"JointModelRX", "JointModelRY", "JointModelRZ", "JointModelRevoluteUnaligned"}
+)
 _CONTINUOUS = frozenset(
     {"JointModelRUBX", "JointModelRUBY", "JointModelRUBZ", "JointModelRevoluteUnboundedUnaligned"}
 )
-_LARGEST = 1e100  # Nm; squares of it still fit into a double
-_NO_LIMIT = 1e6  # rad; Pinocchio writes the largest double where a joint has no limit
+_NO_LIMIT = 1e6  # rad; what is beyond means that there is no limit (1e16, the largest double)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +148,13 @@ class ArmBody:
                 self.damping[i : i + 1],
             )
             model.addJointFrame(index)
-            inertia = pin.Inertia(float(self.masses[i]), self.levers[i], self.inertias[i])
-            model.appendBodyToJoint(index, inertia, pin.SE3.Identity())
+            # not appendBodyToJoint, which divides by the mass, and so rounds the lever; nor the
+            # constructor, which refuses the unphysical rotational inertias of some published arms
+            inertia = pin.Inertia.Zero()
+            inertia.mass = float(self.masses[i])
+            inertia.lever = self.levers[i]
+            inertia.inertia = self.inertias[i]
+            model.inertias[index] = inertia
         model.armature = self.armature
         return model
 
@@ -193,62 +199,6 @@ class ArmBody:
         return sha.hexdigest()
 
 
-def check_body(body: ArmBody, where: str) -> None:
-    """Refuse an arm with numbers that no arm has.
-
-    Parameters
-    ----------
-    body
-        The arm.
-    where
-        What to call it in an error.
-
-    Raises
-    ------
-    InputError
-        For numbers that are not finite, negative masses or damping, placements that are not
-        rotations, and inverted limits; naming the joint.
-    """
-    for field, accepted in (
-        ("masses", "finite masses [kg]"),
-        ("levers", "finite centres of mass [m]"),
-        ("inertias", "finite inertias [kg m^2]"),
-        ("translations", "finite positions [m]"),
-        ("rotations", "rotation matrices"),
-        ("axes", "unit axes"),
-        ("limits", "finite limits [rad]"),
-        ("damping", "finite damping [N m s/rad]"),
-    ):
-        for name, values in zip(body.joint_names, getattr(body, field), strict=True):
-            if not np.all(np.isfinite(values)):
-                raise InputError(where, f"{field} of joint '{name}'", values, accepted)
-    if not np.all(np.isfinite(body.gravity)):
-        raise InputError(where, "gravity", body.gravity, "a finite acceleration [m/s^2]")
-    reach = np.abs(body.translations).sum() + np.abs(body.levers).sum()
-    weight = np.abs(body.masses).sum() * np.linalg.norm(body.gravity)
-    if not reach * weight < _LARGEST:
-        raise InputError(
-            where, "largest gravity torque", f"{reach * weight} Nm", f"less than {_LARGEST:g} Nm"
-        )
-    for i, name in enumerate(body.joint_names):
-        if body.masses[i] < 0:
-            raise InputError(
-                where, f"mass of joint '{name}'", body.masses[i], "a number >= 0 [kg]"
-            )
-        if body.damping[i] < 0:
-            raise InputError(where, f"damping of joint '{name}'", body.damping[i], "a number >= 0")
-        lower, upper = body.limits[i]
-        if not lower < upper:
-            raise InputError(
-                where, f"limits of joint '{name}'", f"[{lower}, {upper}]", "lower < upper [rad]"
-            )
-        rotation = body.rotations[i]
-        if abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0:
-            raise InputError(
-                where, f"placement of joint '{name}'", rotation.tolist(), "a rotation matrix"
-            )
-
-
 def _axis(model: pin.Model, joint: int) -> Array:
     """Return the axis of a revolute joint, read from its motion subspace."""
     kind = model.joints[joint]
@@ -271,6 +221,29 @@ def _limits(model: pin.Model, joint: int) -> tuple[float, float]:
     kind = model.joints[joint]
     if kind.shortname() in _CONTINUOUS:
         return -math.pi, math.pi
-    lower = float(model.lowerPositionLimit[kind.idx_q])
-    upper = float(model.upperPositionLimit[kind.idx_q])
-    return (lower if lower > -_NO_LIMIT else -math.pi, upper if upper < _NO_LIMIT else math.pi)
+    return limits_or_half_turns(
+        model.lowerPositionLimit[kind.idx_q], model.upperPositionLimit[kind.idx_q]
+    )
+
+
+def limits_or_half_turns(lower: float | None, upper: float | None) -> tuple[float, float]:
+    """Return limits [rad], -pi and pi in place of those that are missing.
+
+    Notes
+    -----
+    Missing are: None, numbers beyond 1e6, and both zero, which is what URDF makes of limits that
+    are left out and what exporters of drawing programs write for "not set".
+
+    Examples
+    --------
+    >>> limits_or_half_turns(-1.0, None), limits_or_half_turns(-1e16, 1e16)
+    ((-1.0, 3.141592653589793), (-3.141592653589793, 3.141592653589793))
+    >>> limits_or_half_turns(0.0, 0.0)
+    (-3.141592653589793, 3.141592653589793)
+    """
+    if lower == upper == 0:
+        lower = upper = None
+    return (
+        -math.pi if lower is None or lower < -_NO_LIMIT else float(lower),
+        math.pi if upper is None or upper > _NO_LIMIT else float(upper),
+    )

@@ -11,7 +11,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from symbolic.arm_body import ArmBody, check_body
+from symbolic.arm_body import ArmBody
+from symbolic.body_checks import check_body
 from symbolic.errors import InputError
 from symbolic.kinematic_tree import KinematicTree
 from symbolic.snap_effect import torque_difference_bound

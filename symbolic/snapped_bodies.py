@@ -22,6 +22,7 @@ from symbolic.snapping import (
 )
 from symbolic.urdf import Urdf
 from symbolic.urdf_body import body_from_urdf
+from symbolic.urdf_elements import UrdfJoint
 
 Array = NDArray[np.float64]
 
@@ -51,17 +52,18 @@ def snap_urdf(urdf: Urdf, joint_names: Sequence[str]) -> tuple[ArmBody, tuple[Sn
     snaps: list[Snap] = []
     body = body_from_urdf(urdf, joint_names)
     for i, joint in enumerate(urdf.joints):
-        rpy, axis = snap_angles(joint.rpy), snap_axis(joint.axis)
-        for what, before, after, changed in (
-            ("origin rpy", joint.rpy, rpy, {"rpy": rpy}),
-            ("axis", unit_axis(joint.axis), axis, {"axis": axis}),
-        ):
-            joint = replace(joint, **changed)
-            urdf = replace(urdf, joints=(*urdf.joints[:i], joint, *urdf.joints[i + 1 :]))
-            if differs(before, after):
-                body = _listed(
-                    snaps, joint.name, what, before, after, body, body_from_urdf(urdf, joint_names)
-                )
+        turned = replace(joint, rpy=snap_angles(joint.rpy))
+        urdf = _with_joint(urdf, i, turned)
+        if differs(joint.rpy, turned.rpy):
+            new = body_from_urdf(urdf, joint_names)
+            _list(snaps, joint.name, "origin rpy", joint.rpy, turned.rpy, body, new)
+            body = new
+        axis = snap_axis(joint.axis)
+        urdf = _with_joint(urdf, i, replace(turned, axis=axis))
+        if differs(unit_axis(joint.axis), axis):
+            new = body_from_urdf(urdf, joint_names)
+            _list(snaps, joint.name, "axis", unit_axis(joint.axis), axis, body, new)
+            body = new
     for i, link in enumerate(urdf.links):
         rpy = snap_angles(link.rpy)
         if differs(link.rpy, rpy):  # turns an inertia, which gravity does not see
@@ -91,12 +93,12 @@ def snap_body(body: ArmBody) -> tuple[ArmBody, tuple[Snap, ...]]:
         rotation, before, after = snap_rotation(body.rotations[i])
         turned = replace(body, rotations=_with(body.rotations, i, rotation))
         if differs(before, after):
-            turned = _listed(snaps, name, "placement rpy", before, after, body, turned)
+            _list(snaps, name, "placement rpy", before, after, body, turned)
         old = unit_axis(_triple(body.axes[i]))
         new = snap_axis(old)
         body = replace(turned, axes=_with(body.axes, i, np.array(new)))
         if differs(old, new):
-            body = _listed(snaps, name, "axis", old, new, turned, body)
+            _list(snaps, name, "axis", old, new, turned, body)
     size = float(max(np.abs(body.translations).max(), np.abs(body.levers).max()))
     body = replace(
         body,
@@ -106,7 +108,7 @@ def snap_body(body: ArmBody) -> tuple[ArmBody, tuple[Snap, ...]]:
     return body, tuple(snaps)
 
 
-def _listed(
+def _list(
     snaps: list[Snap],
     name: str,
     what: str,
@@ -114,11 +116,14 @@ def _listed(
     after: Triple,
     old: ArmBody,
     new: ArmBody,
-) -> ArmBody:
-    """Add a snap with its effect to the list; return the new arm."""
+) -> None:
+    """Add a snap with its effect to the list."""
     effect = torque_difference_bound(old.tree(), new.tree())
     snaps.append(Snap(name, what, before, after, effect))
-    return new
+
+
+def _with_joint(urdf: Urdf, i: int, joint: UrdfJoint) -> Urdf:
+    return replace(urdf, joints=(*urdf.joints[:i], joint, *urdf.joints[i + 1 :]))
 
 
 def _with(rows: Array, i: int, row: Array) -> Array:

@@ -90,8 +90,8 @@ def unit_axis(axis: Triple) -> Triple:
 
     Examples
     --------
-    >>> unit_axis((0.0, 0.0, -2.0)), unit_axis((3e200, 4e200, 0.0))
-    ((0.0, 0.0, -1.0), (0.6, 0.8, 0.0))
+    >>> unit_axis((0.0, 0.0, -2.0)), unit_axis((0.6, 0.8, 0.0)), unit_axis((1e200, 0.0, 0.0))
+    ((0.0, 0.0, -1.0), (0.6, 0.8, 0.0), (1.0, 0.0, 0.0))
     """
     largest = max(map(abs, axis))  # first to size one: no overflow
     length = math.hypot(*(value / largest for value in axis)) * largest
@@ -166,27 +166,22 @@ def snap_rotation(rotation: Array) -> tuple[Array, Triple, Triple]:
     Returns
     -------
     tuple
-        The snapped rotation (the very same bits where nothing but rounding is snapped), and its
-        angles before and after.
+        The snapped rotation, with its angles before and after. Where no angle is snapped, not
+        even by rounding noise, the rotation is the very same.
     """
     before = rpy_from_rotation(rotation)
     after = snap_angles(before)
-    if differs(before, after) or all(_is_right(angle) for angle in after):
-        rotation = rotation_from_rpy(after)
-    return clean_rotation(rotation), before, after
+    if before == after:
+        return rotation, before, after
+    snapped = rotation_from_rpy(after)
+    if differs(before, after) or np.abs(snapped - rotation).max() <= ROUNDING:
+        return snapped, before, after
+    return rotation, before, before  # close to pitch = +-pi/2 the angles are too vague for that
 
 
 def differs(before: Triple, after: Triple) -> bool:
     """Say whether something was snapped, other than rounding."""
     return max(abs(a - b) for a, b in zip(before, after, strict=True)) > ROUNDING
-
-
-def clean_rotation(rotation: Array) -> Array:
-    """Set entries of a rotation matrix that are 0 or +-1 up to rounding to exactly that."""
-    clean = np.where(np.abs(rotation) < ROUNDING, 0.0, rotation)
-    filled = clean != 0
-    alone = filled & (filled.sum(axis=0) == 1) & (filled.sum(axis=1) == 1)[:, None]
-    return np.where(alone, np.sign(clean), clean)
 
 
 def clean_lengths(lengths: Array, scale: float) -> Array:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symbolic.arm_body import ArmBody
+from symbolic.arm_body import ArmBody, limits_or_half_turns
 from symbolic.snapping import multiply, rotation_from_rpy, unit_axis
 from symbolic.urdf import Urdf
 from symbolic.urdf_elements import UrdfJoint, UrdfLink
@@ -58,12 +57,7 @@ def body_from_urdf(urdf: Urdf, joint_names: Sequence[str]) -> ArmBody:
         masses=np.array([mass for mass, _, _ in bodies]),
         levers=np.array([lever for _, lever, _ in bodies]),
         inertias=np.array([inertia for _, _, inertia in bodies]),
-        limits=np.array(
-            [
-                (-math.pi, math.pi) if j.lower is None or j.upper is None else (j.lower, j.upper)
-                for j in moving
-            ]
-        ),
+        limits=np.array([limits_or_half_turns(joint.lower, joint.upper) for joint in moving]),
         efforts=np.array([joint.effort for joint in moving]),
         velocities=np.array([joint.velocity for joint in moving]),
         damping=np.array([joint.damping for joint in moving]),
@@ -128,4 +122,3 @@ def _merged(parts: list[tuple[float, Array, Array]]) -> tuple[float, Array, Arra
         x = lever - centre
         tensor = tensor + m * (np.dot(x, x) * np.eye(3) - np.outer(x, x))
     return mass, centre, tensor
-

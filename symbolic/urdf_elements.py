@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from symbolic.body_checks import LARGEST
 from symbolic.errors import InputError
 
 Triple = tuple[float, float, float]
@@ -142,11 +143,12 @@ class UrdfReader:
             )
         if limit is not None:
             for key in ("effort", "velocity"):
-                numbers[key] = self.number(limit, key, f"{key} {of}", 0.0)
-            if joint.kind == "revolute" and {"lower", "upper"} & set(limit.keys()):
-                lower, upper = (
-                    self.number(limit, key, f"{key} limit {of}", 0.0) for key in ("lower", "upper")
-                )
+                numbers[key] = self.number(limit, key, f"{key} {of}", 0.0, math.inf)
+            lower, upper = (
+                self.number(limit, key, f"{key} limit {of}", 0.0, math.inf)
+                for key in ("lower", "upper")
+            )
+            if joint.kind == "revolute" and (lower or upper):  # both zero: not set
                 if not lower < upper:
                     raise InputError(
                         self.where, f"limits {of}", f"[{lower}, {upper}]", "lower < upper [rad]"
@@ -161,7 +163,7 @@ class UrdfReader:
         origin = self.only(element, "origin", of)
         if origin is None:
             return _ZERO, _ZERO
-        for key in origin.keys():
+        for key in origin.attrib:
             if key not in ("xyz", "rpy"):
                 raise InputError(self.where, f"origin of {of}", f"attribute {key}", "xyz and rpy")
         xyz = self.triple(origin, "xyz", f"origin xyz of {of}")
@@ -188,12 +190,19 @@ class UrdfReader:
             raise InputError(self.where, f"{key} of {of}", repr(value), "a name")
         return str(value)
 
-    def number(self, element: Any, key: str, of: str, missing: float | None = None) -> float:
+    def number(
+        self,
+        element: Any,
+        key: str,
+        of: str,
+        missing: float | None = None,
+        largest: float = LARGEST,
+    ) -> float:
         """Return one finite number."""
         text = element.get(key)
         if text is None and missing is not None:
             return missing
-        return self.numbers(text, of, 1)[0]
+        return self.numbers(text, of, 1, largest)[0]
 
     def triple(self, element: Any, key: str, of: str) -> Triple:
         """Return three finite numbers, zeros where the attribute is not there."""
@@ -203,7 +212,9 @@ class UrdfReader:
         x, y, z = self.numbers(text, of, 3)
         return x, y, z
 
-    def numbers(self, text: str | None, of: str, count: int) -> list[float]:
+    def numbers(
+        self, text: str | None, of: str, count: int, largest: float = LARGEST
+    ) -> list[float]:
         """Parse finite numbers; Python's own extras (1_000, other scripts' digits) are refused."""
         accepted = "a finite number" if count == 1 else f"{count} finite numbers"
         shown = "missing" if text is None else repr(text)
@@ -213,6 +224,6 @@ class UrdfReader:
             values = [float(part) for part in text.split()]
         except ValueError:
             raise InputError(self.where, of, shown, accepted) from None
-        if len(values) != count or not all(map(math.isfinite, values)):
+        if len(values) != count or not all(abs(value) < largest for value in values):
             raise InputError(self.where, of, shown, accepted)
         return values
