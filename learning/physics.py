@@ -69,7 +69,7 @@ class SettleRule:
         Local error allowed per integration step [rad].
     time_tolerance : float
         The same expressed as time [s]; the smaller of both counts. It makes the simulated times
-        right to about a per cent, and costs about half of the simulation.
+        right to about a per cent, and costs about half of the work.
 
     Raises
     ------
@@ -82,7 +82,7 @@ class SettleRule:
     dwell: float = 0.05
     time_limit: float = 60.0
     mode: SettleMode = SettleMode.FINISHED
-    tolerance: float = 1e-3
+    tolerance: float = 3e-4
     time_tolerance: float = 5e-3
 
     def __post_init__(self) -> None:

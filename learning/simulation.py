@@ -6,21 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from learning.arm import LimitHit, Outcome, OutcomeKind, Playback, Settled, TimedOut
-from learning.dynamics.assembly import assemble
-from learning.dynamics.engine import Motions
-from learning.dynamics.engines import new_engine, new_equations
 from learning.dynamics.equations import Array
-from learning.physics import (
-    EngineName,
-    MeasurementNoise,
-    PhysicsMode,
-    SettleMode,
-    SettleRule,
-    choice,
-)
-from learning.simulation_input import table, vector, within
-from learning.simulation_results import ArmState, Hold, Release, SimulationSettings
-from learning.simulation_sensors import Sensors
+from learning.physics import EngineName, MeasurementNoise, PhysicsMode, SettleMode, SettleRule
+from learning.simulation_body import SimulatedBody
+from learning.simulation_input import positive, vector
+from learning.simulation_results import ArmState
 from symbolic.errors import InputError
 from symbolic.robots import Robot
 
@@ -31,7 +21,7 @@ _OUTCOMES: dict[OutcomeKind, type[Outcome]] = {
 }
 
 
-class SimulatedArm:
+class SimulatedArm(SimulatedBody):
     """A robot arm in simulation, behind the protocols `learning.arm.Arm` and `ProfileArm`.
 
     Parameters
@@ -107,18 +97,19 @@ class SimulatedArm:
         rng: np.random.Generator | None = None,
         q0: ArrayLike | None = None,
     ) -> None:
-        self.robot = robot
-        self.physics = choice(PhysicsMode, robot.name, "physics", physics)
-        self.engine = choice(EngineName, robot.name, "engine", engine)
-        self.rule = rule or SettleRule(mode=choice(SettleMode, robot.name, "settle", settle))
-        self.noise = noise or MeasurementNoise()
-        equations = new_equations(self.engine, robot.model)
-        assembly = assemble(robot, equations, self.physics, damping, coulomb, limits, home)
-        self._body = assembly.body
-        self._home = assembly.home
-        self._projector = assembly.free.projector if assembly.free.any else None
-        self._sensors = Sensors(robot.name, self.noise, assembly.free.projector, rng)
-        self._engine = new_engine(self.engine, robot.model, self._body, self.rule)
+        super().__init__(
+            robot,
+            physics,
+            engine,
+            damping=damping,
+            coulomb=coulomb,
+            limits=limits,
+            home=home,
+            settle=settle,
+            rule=rule,
+            noise=noise,
+            rng=rng,
+        )
         self._q = self._home.copy()
         self._v = np.zeros(robot.n)
         if q0 is not None:
@@ -126,43 +117,9 @@ class SimulatedArm:
         self._observed = self._sensors.angles(self._q)
 
     @property
-    def n(self) -> int:
-        """Number of joints."""
-        return self.robot.n
-
-    @property
     def q(self) -> Array:
         """Joint angles as last observed [rad], shape (n,)."""
         return self._observed.copy()
-
-    @property
-    def damping(self) -> Array:
-        """Viscous damping (n,) [N m s/rad]."""
-        return self._body.damping.copy()
-
-    @property
-    def limits(self) -> Array:
-        """Joint limits (n, 2) [rad]."""
-        return self._body.limits.copy()
-
-    @property
-    def home(self) -> Array:
-        """Home configuration (n,) [rad]."""
-        return self._home.copy()
-
-    @property
-    def settings(self) -> SimulationSettings:
-        """Everything beside the robot that decides what this arm does."""
-        return SimulationSettings(
-            self.physics,
-            self.engine,
-            tuple(self._body.damping.tolist()),
-            tuple(self._body.coulomb.tolist()),
-            tuple((low, high) for low, high in self._body.limits.tolist()),
-            tuple(self._home.tolist()),
-            self.rule,
-            self.noise,
-        )
 
     def apply(self, torque: ArrayLike) -> Outcome:
         """Apply a constant torque (n,) [N m] from the present configuration and wait.
@@ -206,14 +163,13 @@ class SimulatedArm:
             For torques of the wrong shape or not finite, or a time that is not positive.
         """
         commands = self._commands(torques)
-        if not (np.isfinite(step_seconds) and step_seconds > 0.0):
-            raise InputError(self.robot.name, "step_seconds", step_seconds, "a time > 0 [s]")
+        step_seconds = positive(self.robot.name, "step_seconds", step_seconds, " [s]")
         path = self._engine.follow(self._q, self._v, commands, step_seconds)
         count = len(path.q)
         times = step_seconds * np.arange(1, count + 1, dtype=float)
         times[-1] = path.seconds
-        q = np.array([self._sensors.angles(row) for row in path.q])
-        observed = np.array([self._sensors.torque(row) for row in commands[:count]])
+        q = self._sensors.angles(path.q)
+        observed = self._sensors.torque(commands[:count])
         last = commands[count - 1]
         if path.hit_limit:
             kind = OutcomeKind.LIMIT
@@ -253,63 +209,6 @@ class SimulatedArm:
         torque = self._engine.equations.gravity_torque(self._q)
         return Settled(self._observed.copy(), self._sensors.holding_torque(torque), 0.0)
 
-    def place_and_hold(
-        self, q: ArrayLike, torque: ArrayLike, seconds: float = 5.0, tolerance: float = 0.05
-    ) -> Hold:
-        """Test whether a torque reaches and maintains a configuration.
-
-        The arm starts at rest at q (n,) [rad], the torque (n,) [N m] is applied for ``seconds``,
-        and the arm must then be within ``tolerance`` [rad] of q. A test made on the side, in every
-        physics mode: the arm's own state is not touched.
-
-        Raises
-        ------
-        InputError
-            For angles outside the limits or a torque that cannot be used.
-        """
-        start = self._inside("q", q)
-        motion = self._engine.wait(start, np.zeros(self.n), self._command(torque), seconds)
-        distance = float(np.linalg.norm(motion.q - start))
-        if motion.kind is OutcomeKind.LIMIT:
-            distance = np.inf
-        return Hold(distance < tolerance, distance, motion.q)
-
-    def release_test(
-        self, q: ArrayLike, torque: ArrayLike, acceleration: float | None = None
-    ) -> Release:
-        """Test whether a torque balances a configuration, stable or not.
-
-        The arm is placed at rest at q (n,) [rad], the torque (n,) [N m] is applied, and no joint
-        may at first accelerate faster than ``acceleration`` [rad/s^2] (by default the settle
-        rule's). A test made on the side: the arm's own state is not touched.
-
-        Raises
-        ------
-        InputError
-            For angles or a torque that cannot be used.
-        """
-        start = vector(self.robot.name, "q", q, self.n, " [rad]")
-        bound = self.rule.acceleration if acceleration is None else acceleration
-        first = self._engine.acceleration(start, np.zeros(self.n), self._command(torque))
-        return Release(first, bool((abs(first) <= bound).all()))
-
-    def settle_each(self, starts: ArrayLike, torques: ArrayLike) -> Motions:
-        """Settle from rest at many starts (m, n) [rad], each under its own torque (m, n) [N m].
-
-        One compiled call, for tests and evaluations: no noise, the arm's own state is not touched.
-
-        Raises
-        ------
-        InputError
-            For arrays of the wrong shape or not finite.
-        """
-        commands = self._commands(torques)
-        q = table(self.robot.name, "starts", starts, self.n, " [rad]")
-        if len(q) != len(commands):
-            counts = f"{len(q)} rows beside {len(commands)} torques"
-            raise InputError(self.robot.name, "starts", counts, "as many starts as torques")
-        return self._engine.settle_each(q, commands)
-
     def state(self) -> ArmState:
         """Return the full state of the arm, from which `restore` goes on bit for bit."""
         return ArmState(
@@ -320,10 +219,17 @@ class SimulatedArm:
         )
 
     def restore(self, state: ArmState) -> None:
-        """Put the arm, and its random generator, into a state that `state` returned."""
-        self._q = np.array(state.q, dtype=float)
-        self._v = np.array(state.v, dtype=float)
-        self._observed = np.array(state.observed, dtype=float)
+        """Put the arm, and its random generator, into a state that `state` returned.
+
+        Raises
+        ------
+        InputError
+            For a state of an arm with another number of joints.
+        """
+        where, n = "state", self.n
+        self._q = vector(where, "q", state.q, n, " [rad]")
+        self._v = vector(where, "v", state.v, n, " [rad/s]")
+        self._observed = vector(where, "observed", state.observed, n, " [rad]")
         self._sensors.restore_generator(state.generator)
 
     def _arrive(
@@ -341,19 +247,6 @@ class SimulatedArm:
         self._q = q.copy()
         self._v = np.zeros(self.n)
         self._observed = self._sensors.angles(self._q)
-
-    def _command(self, torque: ArrayLike) -> Array:
-        """Return a torque as it is applied: nothing where gravity feels nothing."""
-        command = vector(self.robot.name, "torque", torque, self.n, " [N m]")
-        return command if self._projector is None else self._projector @ command
-
-    def _commands(self, torques: ArrayLike) -> Array:
-        commands = table(self.robot.name, "torques", torques, self.n, " [N m]")
-        return commands if self._projector is None else commands @ self._projector
-
-    def _inside(self, field: str, q: ArrayLike) -> Array:
-        """Return joint angles that lie within the limits."""
-        return within(self.robot.name, field, q, self._body.limits, self.robot.joint_names)
 
     def _require_guided(self, what: str) -> None:
         if self.physics is not PhysicsMode.GUIDED:

@@ -51,6 +51,19 @@ def not_negative(where: str, field: str, values: ArrayLike, n: int, unit: str) -
     return array
 
 
+def positive(where: str, field: str, value: float, unit: str) -> float:
+    """Return a finite number greater than zero.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+    """
+    if not (isinstance(value, int | float | np.number) and 0.0 < value < np.inf):
+        raise InputError(where, field, value, f"a finite number > 0{unit}")
+    return float(value)
+
+
 def table(where: str, field: str, values: ArrayLike, n: int, unit: str) -> Array:
     """Return a table of finite numbers with n columns and at least one row as its own array.
 

@@ -45,8 +45,10 @@ class SimulationSettings:
     noise: MeasurementNoise
 
     def as_json(self) -> dict[str, Any]:
-        """Return the settings as a JSON document."""
-        return asdict(self)
+        """Return the settings as a JSON document; a joint without limit has null there."""
+        document = asdict(self)
+        document["limits"] = [[x if np.isfinite(x) else None for x in pair] for pair in self.limits]
+        return document
 
 
 @dataclass(frozen=True)

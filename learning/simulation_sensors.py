@@ -48,18 +48,18 @@ class Sensors:
         self._rng = rng
 
     def angles(self, q: Array) -> Array:
-        """Return joint angles (n,) [rad] as the encoders show them."""
+        """Return joint angles (..., n) [rad] as the encoders show them."""
         seen = q.copy()
         if self._noise.angle > 0.0 and self._rng is not None:
-            seen += self._rng.normal(0.0, self._noise.angle, len(q))
+            seen += self._rng.normal(0.0, self._noise.angle, q.shape)
         step = self._noise.encoder_step
         return np.round(seen / step) * step if step > 0.0 else seen
 
     def torque(self, torque: Array) -> Array:
-        """Return an applied torque (n,) [N m] as the torque sensors show it."""
+        """Return applied torques (..., n) [N m] as the torque sensors show them."""
         if self._noise.torque > 0.0 and self._rng is not None:
-            error = self._rng.normal(0.0, self._noise.torque, len(torque))
-            return torque + self._projector @ error
+            error = self._rng.normal(0.0, self._noise.torque, torque.shape)
+            return torque + error @ self._projector
         return torque.copy()
 
     def holding_torque(self, torque: Array) -> Array:

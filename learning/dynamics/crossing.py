@@ -37,8 +37,9 @@ def first_crossing(
     Examples
     --------
     >>> one, still = np.array([1.0]), np.zeros(1)
-    >>> first_crossing(np.array([[-1.0, 0.5]]), still, one, one, one, 1.0)
-    (0.5, array([0.5]))
+    >>> fraction, where = first_crossing(np.array([[-1.0, 0.5]]), still, one, one, one, 1.0)
+    >>> print(round(fraction, 6), where)
+    0.5 [0.5]
     """
     low, high = limits[:, 0], limits[:, 1]
     outside = (q_next < low) | (q_next > high)

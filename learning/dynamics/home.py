@@ -12,10 +12,10 @@ from learning.dynamics.free_directions import FreeDirections
 Array = NDArray[np.float64]
 
 STABLE = 1e-6  # smallest scaled stiffness that counts as stable
-_SAMPLES = 4000
+_SAMPLES_PER_JOINT = 600
 _REFINED = 5
 _EVALUATIONS = 400
-_MARGIN = 0.05  # of the range of each joint, kept free on either side
+_MARGIN = 0.05  # of the range of each joint, at most a turn, kept free on either side
 
 
 def find_home(equations: Equations, free: FreeDirections, limits: Array) -> tuple[Array, float]:
@@ -49,7 +49,7 @@ def find_home(equations: Equations, free: FreeDirections, limits: Array) -> tupl
     def lack(q: Array) -> float:
         return -free.active_stiffness(equations.stiffness(q))
 
-    drawn = np.random.default_rng(0).uniform(low, high, (_SAMPLES, n))
+    drawn = np.random.default_rng(0).uniform(low, high, (n * _SAMPLES_PER_JOINT, n))
     order = np.argsort([lack(q) for q in drawn], kind="stable")[:_REFINED]
     bounds = list(zip(low, high, strict=True))
     options = {"maxfev": _EVALUATIONS * n, "xatol": 1e-4, "fatol": 1e-6}
@@ -67,8 +67,14 @@ def find_home(equations: Equations, free: FreeDirections, limits: Array) -> tupl
 
 
 def searched_range(limits: Array) -> tuple[Array, Array]:
-    """Return the lower and upper angles (n,) between which home is looked for."""
-    low = np.where(np.isfinite(limits[:, 0]), limits[:, 0], -np.pi)
-    high = np.where(np.isfinite(limits[:, 1]), limits[:, 1], np.pi)
-    margin = _MARGIN * (high - low)
-    return low + margin, high - margin
+    """Return the lower and upper angles (n,) between which home is looked for.
+
+    Some way off the limits, and within one turn about zero where they allow that.
+    """
+    low, high = limits[:, 0], limits[:, 1]
+    margin = _MARGIN * np.minimum(high - low, 2.0 * np.pi)
+    low, high = low + margin, high - margin
+    near_zero = (low < np.pi) & (high > -np.pi)
+    return np.where(near_zero, np.maximum(low, -np.pi), low), np.where(
+        near_zero, np.minimum(high, np.pi), high
+    )
