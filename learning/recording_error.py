@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -24,7 +25,7 @@ class RecordingError(InputError):
     """
 
 
-def translated(path: Path, error: sqlite3.Error | OSError) -> RecordingError:
+def translated(path: Path, error: sqlite3.Error | OSError | UnicodeDecodeError) -> RecordingError:
     """Say in the user's words what SQLite or the operating system refused.
 
     Parameters
@@ -34,17 +35,18 @@ def translated(path: Path, error: sqlite3.Error | OSError) -> RecordingError:
     error
         What was raised while it was read or written.
     """
+    kept = "; what was recorded before is kept, and the same command continues there"
     if isinstance(error, OSError):
         reason = error.strerror or str(error)
-        return RecordingError(
-            path,
-            "access",
-            f"refused ({reason})",
-            "a file and directory this user may read and write",
-        )
+        if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+            return RecordingError(path, "disk", f"full ({reason})", "a disk with free space" + kept)
+        return RecordingError(path, "access", f"refused ({reason})", READABLE)
+    # Python's sqlite3 raises the last one when damage has reached SQLite's own message.
+    if isinstance(error, UnicodeDecodeError):
+        found = f"damaged ({error.object!r})"
+        return RecordingError(path, "content", found, "an undamaged recording")
     # The low byte is SQLite's primary result code; Python's own errors carry none.
     primary = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR) & 0xFF
-    kept = "; what was recorded before is kept, and the same command continues there"
     if primary == sqlite3.SQLITE_FULL:
         return RecordingError(path, "disk", f"full ({error})", "a disk with free space" + kept)
     if primary == sqlite3.SQLITE_IOERR:
@@ -65,5 +67,5 @@ def clear_errors(path: Path) -> Iterator[None]:
     """Raise ``RecordingError`` in place of errors of SQLite and of the operating system."""
     try:
         yield
-    except (sqlite3.Error, OSError) as error:
+    except (sqlite3.Error, OSError, UnicodeDecodeError) as error:
         raise translated(path, error) from error

@@ -85,7 +85,7 @@ def check_before_writing(path: Path, expected: RunInfo) -> None:
     """
     if not path.is_file():
         raise RecordingError(path, "file", "missing", "an Isotorque recording")
-    if not os.access(path, os.W_OK):
+    if not os.access(path, os.W_OK, effective_ids=os.access in os.supports_effective_ids):
         raise RecordingError(path, "file", "not writable", "a file this user may write")
     log = path.with_name(path.name + "-wal")
     # Without a log there is no writer and no reader, and nothing needs to be made beside the file.
