@@ -130,7 +130,7 @@ class GravityModel:
     @cached_property
     def free_joints(self) -> tuple[str, ...]:
         """Names of the joints that feel no gravity torque and influence none."""
-        touched = self.significant_potential.frequencies.any(axis=0)
+        touched = np.any(self.significant_potential.frequencies != 0, axis=0).tolist()
         return tuple(name for name, used in zip(self.joint_names, touched, strict=True) if not used)
 
     def torque(self, q: ArrayLike) -> Floats:

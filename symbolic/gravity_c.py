@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 
 from symbolic.gravity import GravityModel
@@ -74,7 +75,8 @@ def _header(model: GravityModel) -> str:
     text += ["q: joint angles [rad]; tau: torques that hold the arm at rest [N m]; in this order:"]
     text += [f"  {i} {name}" for i, name in enumerate(model.joint_names)]
     text += ["", "Compile with `cc -O2 -c`, link with -lm."]
-    safe = [line.replace("*/", "* /").replace("\n", " ") for line in text]
+    # A name must neither end the comment nor open another one.
+    safe = [re.sub(r"[*\\?\x00-\x1f]", "_", line) for line in text]
     return "/* " + "\n".join(f" * {line}".rstrip() for line in safe)[3:] + "\n */"
 
 

@@ -100,7 +100,7 @@ def expanded_program(potential: TrigonometricPolynomial) -> GravityProgram:
     builder = _Builder()
     torques: list[list[Term]] = [[] for _ in range(f.n)]
     for index, (k, a, b) in enumerate(zip(f.frequencies.tolist(), f.cos, f.sin, strict=True)):
-        wave = []
+        wave: list[Term] = []
         if b:
             wave.append((float(b), (builder.wave(f"cos{index + 1}", "cos", k),)))
         if a:
