@@ -51,12 +51,12 @@ def next_velocity(plant, mass, bias, stiffness, torque, momentum, h, elastic, sc
     """Solve ``(M + h D + h^2 K) v' + h F Sign(v') = M v + h (torque - bias)`` for v'.
 
     ``out`` holds a guess of v' before. Returns False where the matrix is not positive definite.
-    Without ``elastic``, K is left out.
+    K is multiplied by ``elastic``, 1 or 0.
     """
     n = torque.shape[0]
     factor = scratch.factor
     pivots = scratch.vectors[PIVOTS]
-    hh = h * h if elastic else 0.0
+    hh = elastic * h * h
     for i in range(n):
         for j in range(i + 1):
             factor[i, j] = mass[i, j] + hh * stiffness[i, j]
@@ -124,11 +124,12 @@ def try_step(plant, q, v, torque, h, scratch):
         v_end[i] = v[i]
     mass = scratch.mass
     stiffness = scratch.stiffness
-    elastic = next_velocity(
-        plant, mass, bias, stiffness, torque, momentum, h, True, scratch, v_full
-    )
-    if not elastic:
-        next_velocity(plant, mass, bias, stiffness, torque, momentum, h, False, scratch, v_full)
+    elastic = 1.0
+    if not next_velocity(
+        plant, mass, bias, stiffness, torque, momentum, h, elastic, scratch, v_full
+    ):
+        elastic = 0.0
+        next_velocity(plant, mass, bias, stiffness, torque, momentum, h, elastic, scratch, v_full)
     half = 0.5 * h
     next_velocity(plant, mass, bias, stiffness, torque, momentum, half, elastic, scratch, v_half)
     for i in range(n):
@@ -152,7 +153,7 @@ def try_step(plant, q, v, torque, h, scratch):
     if not next_velocity(
         plant, mass, bias, stiffness, torque, momentum, half, elastic, scratch, v_end
     ):
-        next_velocity(plant, mass, bias, stiffness, torque, momentum, half, False, scratch, v_end)
+        next_velocity(plant, mass, bias, stiffness, torque, momentum, half, 0.0, scratch, v_end)
     error = 0.0
     for i in range(n):
         q_full = q[i] + h * v_full[i]

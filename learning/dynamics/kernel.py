@@ -11,6 +11,7 @@ from typing import Any
 
 from numba import config, njit
 
+_SHARED = ("kernel.py", "chain.py", "plant.py", "step_control.py")
 # Sums may be reordered and fused, but NaN and infinity keep their meaning: they are tested for.
 _FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
 
@@ -31,8 +32,8 @@ def kernel(function: Callable[..., Any]) -> Any:
     Notes
     -----
     Numba renews a cached function only when the function's own file changes, though it contains
-    the code of the functions it calls from other files. The cache is therefore kept in a folder
-    named for the contents of all files of the package; where that folder cannot be written,
+    the code and the constants of other files. The cache is therefore kept in a folder named for
+    the contents of all files that kernels are made of; where that folder cannot be written,
     numba's own place is used. References are not counted (``_nrt=False``): counting the arrays of
     a call costs as much as the dynamics of a two-joint arm, and nothing is created or freed.
     """
@@ -62,8 +63,13 @@ def _compiled(function: Callable[..., Any], inline: str) -> Any:
 
 @cache
 def _fingerprint(folder: Path) -> str:
-    """Return a short hash of the Python files of a folder."""
+    """Return a short hash of the files that the kernels of a folder are made of."""
     sha = hashlib.sha256()
-    for path in sorted(folder.glob("*.py")):
+    for path in sources(folder):
         sha.update(path.read_bytes())
     return sha.hexdigest()[:16]
+
+
+def sources(folder: Path) -> list[Path]:
+    """Return the files of a folder that kernels are made of: with code, layouts or constants."""
+    return sorted([*folder.glob("compiled_*.py"), *(folder / name for name in _SHARED)])
