@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from symbolic.errors import InputError
 from symbolic.lattice_points import (
@@ -17,8 +16,12 @@ from symbolic.lattice_points import (
     lattice_points_within,
     reduced_basis,
 )
+from symbolic.polytope import distinct, nearer_to_origin
+from symbolic.relation_lookup import TURN, RelationLookup
+from symbolic.torus_blocks import TorusBlock, independent_blocks
 
-TURN = 2 * np.pi
+LARGEST_RANK = 10
+"""Cells of more dimensions (direct factors apart) have too many corners."""
 LEAST_SEPARATION = 1e-3
 """A centre nearer to one of its images than this [rad, in the group's metric] is refused."""
 
@@ -42,8 +45,11 @@ class DirichletCell:
         See ``normals``; the cell is ``normals . y <= offsets``.
     element, turns : (f,) and (f, r) int arrays
         The image beyond a facet is ``A[element] c + d[element] + 2 pi turns``.
-    vertices : (v, r) array
-        Corners of the cell [rad].
+    factors : tuple of (v_i, r_i) arrays
+        Corners of the factors of the cell, each in its own coordinates (a single factor, unless
+        the group is a direct product).
+    coordinates : tuple of (r_i,) int arrays
+        The coordinates of each factor.
     """
 
     center: Floats
@@ -53,7 +59,18 @@ class DirichletCell:
     offsets: Floats
     element: Integers
     turns: Integers
-    vertices: Floats
+    factors: tuple[Floats, ...]
+    coordinates: tuple[Integers, ...]
+
+    @property
+    def vertices(self) -> Floats:
+        """Corners of the cell [rad], shape (v, r)."""
+        vertices = np.zeros((1, len(self.center)))
+        for corners, part in zip(self.factors, self.coordinates, strict=True):
+            count = len(vertices)
+            vertices = np.repeat(vertices, len(corners), axis=0)
+            vertices[:, part] = np.tile(corners, (count, 1))
+        return vertices
 
     @property
     def halfspaces(self) -> Floats:
@@ -97,7 +114,7 @@ def dirichlet_cell(A: NDArray[np.number], d: Floats, center: Floats) -> Dirichle
     Parameters
     ----------
     A : (G, r, r) array
-        Integer linear parts of a group modulo 2 pi, in y = B q coordinates.
+        Integer linear parts of a group modulo 2 pi; all maps (A, d) different.
     d : (G, r) array
         Offsets [rad].
     center : (r,) array
@@ -106,20 +123,19 @@ def dirichlet_cell(A: NDArray[np.number], d: Floats, center: Floats) -> Dirichle
     Raises
     ------
     InputError
-        If a matrix is not integer, or the centre is fixed, or nearly, by a map of the group.
+        If a matrix is not integer, if the centre is fixed, or nearly, by a map of the group, or
+        if there are too many dimensions.
 
     Notes
     -----
     Only images within twice the circumradius of the cell can bound it. Images are enumerated
     (Fincke-Pohst) in a growing ball until twice the circumradius of the polytope they bound fits
-    in; the covering radius of the lattice 2 pi Z^r caps the ball. The polytope is computed as the
-    convex hull of the dual points (Qhull). A half-space is a facet where the corners that lie on
-    it span r - 1 dimensions, all others are redundant.
+    in; the covering radius of the lattice 2 pi Z^r caps the ball. The cell of a direct product is
+    the product of the cells of its factors.
 
     References
     ----------
     Schwarzenberger, N-dimensional crystallography, Pitman 1980 (Dirichlet cells).
-    Barber, Dobkin, Huhdanpaa, The quickhull algorithm, ACM TOMS 22, 1996.
 
     Examples
     --------
@@ -128,24 +144,76 @@ def dirichlet_cell(A: NDArray[np.number], d: Floats, center: Floats) -> Dirichle
     [[-1.0, 0.0], [1.0, 3.1416]]
     """
     total = invariant_metric(A)
-    order, r = len(A), len(center)
-    metric = total / order
-    basis = reduced_basis(total)
-    if r == 0:
-        none = np.zeros((0, 0))
-        whole = none.astype(np.int64)
-        empty = np.zeros(0, dtype=np.int64)
-        return DirichletCell(
-            center, metric, basis, none, np.zeros(0), empty, whole, np.zeros((1, 0))
+    metric = total / len(A)
+    blocks = independent_blocks(np.round(A), d)
+    parts = [_factor(block, center[block.coordinates]) for block in blocks]
+    r = len(center)
+    basis = np.zeros((r, r), dtype=np.int64)
+    lookup = RelationLookup(np.round(A).astype(np.int64), d)
+    normals, elements, turns = [], [], []
+    for block, part in zip(blocks, parts, strict=True):
+        here = block.coordinates
+        f = len(part.element)
+        basis[np.ix_(here, here)] = part.basis
+        step, full = np.zeros((f, r)), np.zeros((f, r), dtype=np.int64)
+        step[:, here] = part.steps
+        linear, offset = np.tile(np.eye(r, dtype=np.int64), (f, 1, 1)), np.zeros((f, r))
+        linear[:, here[:, None], here] = block.A[part.element]
+        offset[:, here] = block.d[part.element]
+        element = lookup.find(linear, offset)
+        full[:, here] = part.turns + np.rint((offset - d[element])[:, here] / TURN).astype(int)
+        normals.append(step @ metric)
+        elements.append(element)
+        turns.append(full)
+    normal = np.concatenate(normals) if blocks else np.zeros((0, r))
+    half = [np.einsum("fi,ij,fj->f", p.steps, p.metric, p.steps) / 2 for p in parts]
+    return DirichletCell(
+        center=center,
+        metric=metric,
+        basis=basis,
+        normals=normal,
+        offsets=(np.concatenate(half) if blocks else np.zeros(0)) + normal @ center,
+        element=np.concatenate(elements) if blocks else np.zeros(0, dtype=np.int64),
+        turns=np.concatenate(turns) if blocks else np.zeros((0, r), dtype=np.int64),
+        factors=tuple(part.corners for part in parts),
+        coordinates=tuple(block.coordinates for block in blocks),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Factor:
+    """The Dirichlet cell of one block; ``steps`` lead from the centre to the bounding images."""
+
+    metric: Floats
+    basis: Integers
+    steps: Floats
+    element: Integers
+    turns: Integers
+    corners: Floats
+
+
+def _factor(block: TorusBlock, center: Floats) -> _Factor:
+    """Build the cell of one block of coordinates."""
+    r = len(center)
+    if r > LARGEST_RANK:
+        raise InputError(
+            "fundamental domain",
+            "rank of the symmetry group (direct factors apart)",
+            r,
+            f"at most {LARGEST_RANK}",
         )
+    total = invariant_metric(block.A)
+    metric = total / len(block.A)
+    basis = reduced_basis(total)
     upper = np.linalg.cholesky(metric).T
-    shift = (np.einsum("gij,j->gi", A, center) + d - center) / TURN
+    shift = (np.einsum("gij,j->gi", block.A, center) + block.d - center) / TURN
     largest = 2 * TURN * covering_radius_bound(metric, basis)
-    radius = min(largest, _ball_radius(r, 8.0 * 2**r * TURN**r * upper.diagonal().prod() / order))
+    per_image = TURN**r * upper.diagonal().prod() / len(block.A)
+    radius = min(largest, _ball_radius(r, 8.0 * 2**r * per_image))
     while True:
         element, turns = lattice_points_within(metric, basis, shift, radius / TURN)
-        steps = TURN * (turns + shift[element]) @ upper.T
-        length = np.linalg.norm(steps, axis=1)
+        steps = TURN * (turns + shift[element])
+        length = np.linalg.norm(steps @ upper.T, axis=1)
         nearest = np.argsort(length, kind="stable")[1:]  # the first is the centre itself
         if len(nearest) and length[nearest[0]] < LEAST_SEPARATION:
             raise InputError(
@@ -154,64 +222,23 @@ def dirichlet_cell(A: NDArray[np.number], d: Floats, center: Floats) -> Dirichle
                 f"{length[nearest[0]]:.2g} rad",
                 "a generic centre, moved by every relation but the identity",
             )
-        corners = _corners(steps[nearest])
+        corners, facets = nearer_to_origin(steps[nearest] @ upper.T)
         reach = np.linalg.norm(corners, axis=1).max(initial=0.0) if len(corners) else math.inf
-        if radius >= largest or 2 * reach <= radius:
+        if 2 * reach <= radius or radius >= largest:
             break
         radius = min(largest, 2.001 * reach, 1.6 * radius)
-    chosen = nearest[_is_facet(steps[nearest], corners)]
+    chosen = nearest[facets]
     chosen = chosen[np.lexsort((*turns[chosen].T[::-1], element[chosen], length[chosen].round(9)))]
-    normals = steps[chosen] @ upper
-    return DirichletCell(
-        center=center,
+    return _Factor(
         metric=metric,
         basis=basis,
-        normals=normals,
-        offsets=length[chosen] ** 2 / 2 + normals @ center,
+        steps=steps[chosen],
         element=element[chosen],
         turns=turns[chosen],
-        vertices=np.linalg.solve(upper, _distinct(corners).T).T + center,
+        corners=np.linalg.solve(upper, distinct(corners).T).T + center,
     )
 
 
 def _ball_radius(r: int, volume: float) -> float:
     """Return the radius of the r-dimensional ball of the given volume."""
     return float((volume * math.gamma(r / 2 + 1)) ** (1 / r) / math.sqrt(math.pi))
-
-
-def _corners(steps: Floats) -> Floats:
-    """Return the corners of {u : steps . u <= |steps|^2 / 2}; none if that is unbounded.
-
-    The corners are the facets of the convex hull of the dual points ``2 s / |s|^2``.
-    """
-    dual = 2 * steps / (steps**2).sum(axis=1, keepdims=True)
-    if steps.shape[1] == 1:
-        ends = np.array([dual.min(initial=0.0), dual.max(initial=0.0)])
-        return (1 / ends)[:, None] if ends[0] < 0 < ends[1] else dual[:0]
-    try:
-        hull = ConvexHull(dual)
-    except (QhullError, ValueError):  # too few points, or all in one plane
-        return dual[:0]
-    outward, below = hull.equations[:, :-1], hull.equations[:, -1]
-    if below.max() > -1e-9 * np.abs(dual).max():
-        return dual[:0]
-    return np.asarray(-outward / below[:, None])
-
-
-def _distinct(corners: Floats) -> Floats:
-    """Return corners without repetitions (a corner of many facets is found more than once)."""
-    pairs = cKDTree(corners).query_pairs(1e-8 * np.abs(corners).max(), output_type="ndarray")
-    return np.asarray(np.delete(corners, pairs[:, 1], axis=0))
-
-
-def _is_facet(steps: Floats, corners: Floats) -> NDArray[np.bool_]:
-    """Say which half-spaces meet the polytope in a face of r - 1 dimensions."""
-    r = steps.shape[1]
-    half = (steps**2).sum(axis=1) / 2
-    touching = steps @ corners.T >= (half * (1 - 1e-11))[:, None]
-    facet = touching.sum(axis=1) >= r
-    for i in np.flatnonzero(facet):
-        face = corners[touching[i]]
-        spread = np.linalg.svd(face - face.mean(axis=0), compute_uv=False)
-        facet[i] = r == 1 or spread[r - 2] > 1e-9 * math.sqrt(2 * half[i])
-    return facet

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symbolic.dirichlet_cell import TURN, DirichletCell, dirichlet_cell, tidy_halfspaces
+from symbolic.dirichlet_cell import DirichletCell, dirichlet_cell, tidy_halfspaces
 from symbolic.errors import InputError
 from symbolic.folding import Folder
 from symbolic.generic_center import generic_center
 from symbolic.lattice_points import Floats, Integers
+from symbolic.relation_lookup import TURN
 from symbolic.relations import SymmetryGroup, SymmetryRelation
 from symbolic.torus_action import TorusAction, torus_action
 

@@ -7,18 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from symbolic.dirichlet_cell import TURN, DirichletCell
-from symbolic.errors import InputError
+from symbolic.dirichlet_cell import DirichletCell
 from symbolic.integer_lattice import integer_inverse
 from symbolic.lattice_points import Floats, Integers
+from symbolic.relation_lookup import TURN, RelationLookup
 from symbolic.torus_action import TorusAction
 
 ON_FACET = 1e-9
 """Points within this of a facet [rad] count as on it."""
 SAME_COORDINATE = 1e-7
 """Representatives on the boundary whose coordinates differ by less [rad] are compared further."""
-SAME_OFFSET = 1e-2
-"""Offsets of a product and of the listed relation may differ by this [rad] (learned relations)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,11 +80,10 @@ class Folder:
     def __init__(self, cell: DirichletCell, action: TorusAction) -> None:
         self._cell = cell
         self._A, self._d, self._scale = action.A, action.d, action.scale
-        linear = self._A.astype(np.int64)
-        self._identity = _find(
-            linear, self._d, np.eye(linear.shape[1], dtype=np.int64), 0 * self._d[0]
-        )
-        self._crossings = _crossing_table(cell, linear, self._d)
+        r = self._d.shape[1]
+        lookup = RelationLookup(self._A.astype(np.int64), self._d)
+        self._identity = int(lookup.find(np.eye(r, dtype=np.int64)[None], np.zeros((1, r)))[0])
+        self._crossings = _crossing_table(cell, lookup, action)
         self._to_basis = np.linalg.inv(cell.basis.astype(float)) / TURN
         self._facet_length = np.sqrt(np.einsum("fi,fi->f", cell.normals, cell.normals))
 
@@ -190,35 +187,16 @@ def _rows_not_in(rows: Integers, known: Integers) -> Integers:
     return rows[~np.isin(number[len(known) :], number[: len(known)])]
 
 
-def _find(linear: Integers, d: Floats, wanted_linear: Integers, wanted_d: Floats) -> int:
-    """Return the index of the relation with the given linear part and offset modulo 2 pi."""
-    same = np.flatnonzero((linear == wanted_linear).all(axis=(1, 2)))
-    if len(same):
-        miss = np.abs(np.remainder(d[same] - wanted_d + np.pi, TURN) - np.pi)
-        worst = miss.max(axis=1, initial=0.0)
-        best = int(np.argmin(worst))
-        if worst[best] < SAME_OFFSET:
-            return int(same[best])
-    raise InputError(
-        "fundamental domain",
-        "product of relations",
-        f"A_sat = {wanted_linear.tolist()}, d_sat = {np.round(wanted_d, 6).tolist()}, not listed",
-        "relations closed under composition and inverse",
-    )
-
-
-def _crossing_table(cell: DirichletCell, linear: Integers, d: Floats) -> _Crossings:
-    """Tabulate the inverse of each facet's map, composed with every relation of the group."""
+def _crossing_table(cell: DirichletCell, lookup: RelationLookup, action: TorusAction) -> _Crossings:
+    """Tabulate the inverse of each facet's map, composed with every map of the group."""
+    linear, d = action.A.astype(np.int64), action.d
     facets, (order, r) = len(cell.element), d.shape
     element = np.zeros((facets, order), dtype=np.int64)
     turns = np.zeros((facets, order, r), dtype=np.int64)
     back = np.zeros((facets, r, r), dtype=np.int64)
     for f, (g, z) in enumerate(zip(cell.element, cell.turns, strict=True)):
         back[f] = integer_inverse(linear[g])
-        shift = -back[f] @ (d[g] + TURN * z)
-        products = np.einsum("ij,gjk->gik", back[f], linear)
-        offsets = d @ back[f].T + shift
-        for h in range(order):
-            element[f, h] = _find(linear, d, products[h], offsets[h])
+        offsets = (d - d[g] - TURN * z) @ back[f].T
+        element[f] = lookup.find(np.einsum("ij,gjk->gik", back[f], linear), offsets)
         turns[f] = np.rint((offsets - d[element[f]]) / TURN).astype(np.int64)
     return _Crossings(element, turns, back)

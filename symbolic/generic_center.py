@@ -7,8 +7,10 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from symbolic.dirichlet_cell import TURN, invariant_metric
+from symbolic.dirichlet_cell import invariant_metric
 from symbolic.lattice_points import Floats, reduced_basis
+from symbolic.relation_lookup import TURN
+from symbolic.torus_blocks import independent_blocks
 
 _MOST_GRID_POINTS = 4096
 _IRREGULAR_POINTS = 512
@@ -35,9 +37,15 @@ def generic_center(A: NDArray[np.number], d: Floats) -> Floats:
     >>> generic_center(mirror, np.zeros((2, 1))).round(4).tolist()
     [1.5708]
     """
+    center = np.zeros(d.shape[1])
+    for block in independent_blocks(np.round(A), d):
+        center[block.coordinates] = _block_center(block.A, block.d)
+    return center
+
+
+def _block_center(A: Floats, d: Floats) -> Floats:
+    """Choose the centre for a group that is no direct product."""
     r = d.shape[1]
-    if r == 0:
-        return np.zeros(0)
     grid = _grid(r)
     irregular = TURN * (_additive_sequence(_IRREGULAR_POINTS, r) - 0.5)
     grid_apart, irregular_apart = (_separation(A, d, x) for x in (grid, irregular))

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from symbolic.errors import InputError
 from symbolic.integer_lattice import hermite
 from symbolic.lattice_points import Floats, Integers
-
-TURN = 2 * np.pi
+from symbolic.relation_lookup import TURN
 
 
 @dataclass(frozen=True, eq=False)
