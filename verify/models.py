@@ -13,6 +13,7 @@ from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from verify.counterexamples import largest_value
+from verify.stability import has_stable_image, is_stable
 from verify.targets import TargetSet, dense_targets
 from verify.verdict import Status, Verdict
 
@@ -56,7 +57,8 @@ class ModelJudgement:
     Attributes
     ----------
     targets : tuple of TargetResult
-        The dense set first, then the sets that were asked for.
+        The dense set first; with a group, where both exist, its parts whose orbits have a stable
+        member and have none; then the sets that were asked for.
     largest_error : (n,) array
         Torque errors at ``worst_configuration`` [N m].
     worst_configuration : (n,) array
@@ -93,7 +95,7 @@ def verify_model(
     targets: Sequence[TargetSet] = (),
     tolerance: float | None = None,
     largest_tolerance: float | None = None,
-    equivariance_tolerance: float = 1e-9,
+    equivariance_tolerance: float | None = None,
 ) -> ModelJudgement:
     """Judge a learned model against the true gravity torque.
 
@@ -107,7 +109,8 @@ def verify_model(
     limits
         Judge within these joint limits, (n, 2) [rad]; the whole torus by default.
     group
-        Also judge equivariance under this group.
+        The true group: also measure equivariance, and tell orbits with and without a stable
+        member apart.
     targets
         More sets of configurations to give the error on.
     tolerance
@@ -115,7 +118,7 @@ def verify_model(
     largest_tolerance
         Largest torque error that is accepted [N m]; None to claim nothing.
     equivariance_tolerance
-        Departure from equivariance that counts as none [N m].
+        Departure from equivariance that counts as none [N m]; None to claim nothing.
 
     Returns
     -------
@@ -149,7 +152,12 @@ def verify_model(
     def errors(q: Array) -> Array:
         return np.asarray(predict(q) - gravity.torque(q))
 
-    results = tuple(_on(targets_, errors, active) for targets_ in (dense, *targets))
+    sets = (dense, *_by_stability(dense, gravity, group), *targets)
+    basis = np.eye(n)[active] if group is None else group.basis
+    results = tuple(
+        _on(chosen, errors, active, int(is_stable(chosen.q, gravity, basis).sum()))
+        for chosen in sets
+    )
 
     def size(q: Array) -> Array:
         return np.abs(errors(q)[:, active]).max(axis=1, initial=0.0)
@@ -205,10 +213,28 @@ def _checked(predict: Predict, n: int) -> Callable[[Array], Array]:
     return checked
 
 
-def _on(targets: TargetSet, errors: Callable[[Array], Array], active: Array) -> TargetResult:
+def _by_stability(
+    dense: TargetSet, gravity: GravityModel, group: SymmetryGroup | None
+) -> tuple[TargetSet, ...]:
+    if group is None:
+        return ()
+    held = has_stable_image(dense.q, gravity, group)
+    if held.all() or not held.any():
+        return ()
+    words = "of it, orbits {} a stable member"
+    return (
+        TargetSet(words.format("with"), dense.q[held]),
+        TargetSet(words.format("without"), dense.q[~held]),
+    )
+
+
+def _on(
+    targets: TargetSet, errors: Callable[[Array], Array], active: Array, stable: int
+) -> TargetResult:
     found = errors(targets.q)
     by_joint = np.sqrt(np.mean(found**2, axis=0))
-    return TargetResult(targets.name, len(targets.q), torque_rmse(found, active), by_joint)
+    rmse = torque_rmse(found, active)
+    return TargetResult(targets.name, len(targets.q), rmse, by_joint, stable=stable)
 
 
 def _equivariance(
@@ -231,7 +257,7 @@ def _verdicts(
     broken: tuple[float, Array] | None,
     tolerance: float | None,
     largest_tolerance: float | None,
-    equivariance_tolerance: float,
+    equivariance_tolerance: float | None,
 ) -> tuple[Verdict, ...]:
     verdicts = []
     if tolerance is not None:
@@ -244,7 +270,7 @@ def _verdicts(
         fails = largest > largest_tolerance
         status = Status.REFUTED if fails else Status.TESTED
         verdicts.append(Verdict(claim, status, largest, worst if fails else None))
-    if broken is not None:
+    if broken is not None and equivariance_tolerance is not None:
         claim = f"the model is equivariant within {equivariance_tolerance:g} Nm"
         fails = broken[0] > equivariance_tolerance
         status = Status.REFUTED if fails else Status.TESTED

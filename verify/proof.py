@@ -223,12 +223,12 @@ def _offset_error(
 
 def upper(ball: arb) -> float:
     """Return a float that is not below any number of the ball."""
-    return float(np.nextafter(float(ball.upper()), np.inf))
+    return 0.0 if ball == 0 else float(np.nextafter(float(ball.upper()), np.inf))
 
 
 def lower(ball: arb) -> float:
     """Return a float that is not above any number of the ball."""
-    return float(np.nextafter(float(ball.lower()), -np.inf))
+    return 0.0 if ball == 0 else float(np.nextafter(float(ball.lower()), -np.inf))
 
 
 def _text(k: NDArray[np.int64]) -> str:

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import jinja2
-import numpy as np
 from markupsafe import Markup
 
 from symbolic.errors import InputError
 from verify.figures.style import to_svg
 from verify.report_document import report_document
 from verify.report_figures import Picture, report_pictures
+from verify.report_text import map_lines, matrix, number, vector
 from verify.run_report import RunReport
 from verify.verdict import Verdict, all_passed
 
@@ -108,58 +107,8 @@ def _template(name: str) -> jinja2.Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["number"] = number
-    environment.filters["vector"] = vector
-    environment.filters["matrix"] = matrix
+    environment.filters |= {"number": number, "vector": vector, "matrix": matrix, "map": map_lines}
     return environment.get_template(name)
-
-
-def number(value: float | int | None, digits: int = 3) -> Markup:
-    """Write a number for people: ``digits`` significant ones, powers of ten where they help.
-
-    Examples
-    --------
-    >>> str(number(0.0053)), str(number(-12.3456)), str(number(2.14e-15))
-    ('0.0053', '−12.3', '2.14·10<sup>−15</sup>')
-    """
-    if value is None or not math.isfinite(value):
-        return Markup("–")
-    if isinstance(value, int | np.integer):
-        return Markup(f"{value:,}".replace(",", "\N{NARROW NO-BREAK SPACE}").replace("-", "−"))
-    if value == 0:
-        return Markup("0")
-    exponent = math.floor(math.log10(abs(value)))
-    if -4 <= exponent < 5:
-        places = max(0, digits - 1 - exponent)
-        text = f"{value:,.{places}f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
-        text = text.rstrip("0").rstrip(".") if "." in text else text
-        return Markup(text.replace("-", "−"))
-    mantissa = f"{value / 10.0**exponent:.{digits - 1}f}".rstrip("0").rstrip(".")
-    power = str(exponent).replace("-", "−")
-    return Markup(f"{mantissa.replace('-', '−')}·10<sup>{power}</sup>")
-
-
-def vector(values: Any, digits: int = 4) -> Markup:
-    """Write the entries of a vector in brackets."""
-    return Markup("(") + Markup(", ").join(number(_entry(x), digits) for x in values) + Markup(")")
-
-
-def matrix(values: Any) -> Markup:
-    """Write a matrix as a table."""
-    rows = (
-        Markup("<tr>")
-        + Markup("").join(
-            Markup("<td>") + number(_entry(x), 5) + Markup("</td>") for x in np.atleast_1d(row)
-        )
-        + Markup("</tr>")
-        for row in np.asarray(values)
-    )
-    return Markup('<table class="matrix">') + Markup("").join(rows) + Markup("</table>")
-
-
-def _entry(value: Any) -> float | int:
-    x = float(value)
-    return int(x) if x.is_integer() and abs(x) < 1e9 else x
 
 
 def _write(path: Path, text: str) -> None:

@@ -95,16 +95,16 @@ def _discovery(report: RunReport) -> Iterator[Picture]:
         figure = torque_profiles(traces)
         yield Picture("fig3-torque-profiles", "discovery", f"{words} (Fig. 3).", figure)
         caption = (
-            "The motion they led to (Fig. 4). Black dots: settled there; red crosses: a joint "
-            "limit was met or the arm did not settle, and went home."
+            "The motion they led to (Fig. 4). Dots: where the arm settled under the last torque; "
+            "red crosses: a joint limit was met or it did not settle, and went home."
         )
         figure = joint_trajectories(traces)
         yield Picture("fig4-joint-trajectories", "discovery", caption, figure)
     torques = report.static_torques
     if torques is not None and len(torques.admissible) and torques.admissible.shape[1] > 1:
-        caption = (
-            "Set of static torques as the arm found it (SST, Fig. 7). Shaded: the region that "
-            "exploration is kept in."
+        shaded = torques.triangles is not None
+        caption = "Set of static torques as the arm found it (SST, Fig. 7)." + (
+            " Shaded: the region that exploration is kept in." if shaded else ""
         )
         figure = static_torque_map(
             torques.admissible, torques.inadmissible, triangles=torques.triangles

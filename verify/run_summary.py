@@ -93,8 +93,10 @@ def _traces(profiles: Sequence[Discovery]) -> tuple[ProfileTrace, ...]:
         if played is not None and len(played.times):
             kept = np.unique(np.linspace(0, len(played.times) - 1, MOST_TIMES).astype(int))
             times = played.times[kept] - played.times[0]
-            kind = str(motion.outcome.kind)
-            traces.append(ProfileTrace(times, played.torques[kept], played.q[kept], kind))
+            end = motion.outcome
+            traces.append(
+                ProfileTrace(times, played.torques[kept], played.q[kept], str(end.kind), end.q)
+            )
     return tuple(traces)
 
 

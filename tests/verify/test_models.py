@@ -30,6 +30,7 @@ def test_the_truth_passes_everything(two_link):
         group=two_link.group,
         tolerance=1e-9,
         largest_tolerance=1e-9,
+        equivariance_tolerance=1e-9,
     )
     assert judgement.rmse == 0.0
     assert judgement.equivariance_error < 1e-12
@@ -78,7 +79,9 @@ def test_limits_keep_the_search_inside(two_link):
 
 def test_a_model_that_breaks_a_symmetry_is_caught(two_link):
     model = Learned(two_link.gravity, lambda q: 0.1 * np.sin(q))
-    judgement = verify_model(model, two_link.gravity, group=two_link.group)
+    judgement = verify_model(
+        model, two_link.gravity, group=two_link.group, equivariance_tolerance=0.01
+    )
     assert judgement.equivariance_error > 0.1
     verdict = judgement.verdicts[-1]
     assert verdict.status is Status.REFUTED
@@ -98,6 +101,28 @@ def test_free_joints_do_not_count(upright):
     assert judgement.rmse == pytest.approx(0.1)
     assert judgement.rmse_by_joint == pytest.approx([100.0, 0.1])
     assert all_passed(judgement.verdicts)
+
+
+def test_orbits_with_and_without_a_stable_member_are_told_apart(arms):
+    arm = arms["3r"]
+    invariant = Learned(
+        arm.gravity,
+        lambda q: (np.sin(q[:, 1]) * np.sin(q[:, 1] + q[:, 2]) < 0)[:, None] * np.ones((1, 3)),
+    )
+    dense, good, bad = verify_model(invariant, arm.gravity, group=arm.group).targets
+    # physics.md: only where sin q2 sin(q2 + q3) > 0 can a member be stable; 21 % of orbits have one
+    assert good.rmse == 0.0
+    assert good.count + bad.count == dense.count
+    assert good.count / dense.count == pytest.approx(0.21, abs=0.02)
+    assert bad.stable == 0
+    assert good.stable == dense.stable
+    assert dense.stable / dense.count == pytest.approx(0.11, abs=0.02)
+
+
+def test_every_orbit_of_the_2r_arm_has_a_stable_member(two_link):
+    judgement = verify_model(two_link.gravity.torque, two_link.gravity, group=two_link.group)
+    (dense,) = judgement.targets
+    assert dense.stable / dense.count == pytest.approx(0.25, abs=0.03)
 
 
 def test_rmse_of_nothing_is_zero():

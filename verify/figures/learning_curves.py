@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from symbolic.errors import InputError
@@ -92,6 +93,9 @@ def learning_curves(
             positive = [x for curve in curves for x in np.atleast_1d(curve.samples) if x > 0]
             if positive and max(positive) / min(positive) > 20:
                 ax.set_xscale("log")
+                ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.6g}"))
+                ax.xaxis.set_minor_formatter(NullFormatter())
             if all(np.all(np.asarray(curve.rmse) > 0) for curve in curves):
                 ax.set_yscale("log")
         else:

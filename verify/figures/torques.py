@@ -43,12 +43,16 @@ class ProfileTrace:
         Joint angles observed [rad].
     outcome : str
         "settled", "limit" or "timeout".
+    final : (n,) array or None
+        Where the arm came to rest under the last torque, or was stopped [rad]; the last observed
+        angles by default.
     """
 
     times: Array
     torques: Array
     q: Array
     outcome: str
+    final: Array | None = None
 
     def __post_init__(self) -> None:
         shape = (len(self.times), np.shape(self.q)[-1])
@@ -114,11 +118,19 @@ def joint_trajectories(traces: Sequence[ProfileTrace]) -> Figure:
                 )  # fmt: skip
             start += float(trace.times[-1])
             settled = trace.outcome == "settled"
+            final = trace.q[-1] if trace.final is None else trace.final
+            for before, after in zip(trace.q[-1], final, strict=True):  # the wait is not drawn
+                ax.plot([start, start], [before, after], color=FAINT, linewidth=0.8, zorder=1)
             ax.plot(
-                np.full(n, start), trace.q[-1], "o" if settled else "x",
-                color=INK if settled else RED, markersize=4.0 if settled else 6.0,
-                markeredgewidth=1.5, zorder=4, clip_on=False,
-            )  # fmt: skip
+                np.full(n, start),
+                final,
+                "o" if settled else "x",
+                color=INK if settled else RED,
+                markersize=4.0 if settled else 6.0,
+                markeredgewidth=1.5,
+                zorder=4,
+                clip_on=False,
+            )
         ax.set_xlim(0.0, max(start, 1e-9))
         ax.set_xlabel("time [s]")
         ax.set_ylabel("joint angle [rad]")
