@@ -57,8 +57,8 @@ class ModelJudgement:
     Attributes
     ----------
     targets : tuple of TargetResult
-        The dense set first; with a group, where both exist, its parts whose orbits have a stable
-        member and have none; then the sets that were asked for.
+        The dense set first; where they were asked for and both exist, its parts whose orbits
+        have a stable member and have none; then the sets that were given.
     largest_error : (n,) array
         Torque errors at ``worst_configuration`` [N m].
     worst_configuration : (n,) array
@@ -92,6 +92,7 @@ def verify_model(
     *,
     limits: ArrayLike | None = None,
     group: SymmetryGroup | None = None,
+    orbits: SymmetryGroup | None = None,
     targets: Sequence[TargetSet] = (),
     tolerance: float | None = None,
     largest_tolerance: float | None = None,
@@ -109,8 +110,10 @@ def verify_model(
     limits
         Judge within these joint limits, (n, 2) [rad]; the whole torus by default.
     group
-        The true group: also measure equivariance, and tell orbits with and without a stable
-        member apart.
+        Also measure equivariance under this group.
+    orbits
+        The true group: also tell configurations apart whose orbits have a stable member, which
+        an arm can learn by itself, and have none.
     targets
         More sets of configurations to give the error on.
     tolerance
@@ -152,10 +155,9 @@ def verify_model(
     def errors(q: Array) -> Array:
         return np.asarray(predict(q) - gravity.torque(q))
 
-    sets = (dense, *_by_stability(dense, gravity, group), *targets)
-    basis = np.eye(n)[active] if group is None else group.basis
+    sets = (dense, *_by_stability(dense, gravity, orbits), *targets)
     results = tuple(
-        _on(chosen, errors, active, int(is_stable(chosen.q, gravity, basis).sum()))
+        _on(chosen, errors, active, int(is_stable(chosen.q, gravity).sum()))
         for chosen in sets
     )
 
@@ -214,11 +216,11 @@ def _checked(predict: Predict, n: int) -> Callable[[Array], Array]:
 
 
 def _by_stability(
-    dense: TargetSet, gravity: GravityModel, group: SymmetryGroup | None
+    dense: TargetSet, gravity: GravityModel, orbits: SymmetryGroup | None
 ) -> tuple[TargetSet, ...]:
-    if group is None:
+    if orbits is None:
         return ()
-    held = has_stable_image(dense.q, gravity, group)
+    held = has_stable_image(dense.q, gravity, orbits)
     if held.all() or not held.any():
         return ()
     words = "of it, orbits {} a stable member"

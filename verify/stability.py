@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 
 
-def is_stable(q: ArrayLike, gravity: GravityModel, basis: ArrayLike) -> NDArray[np.bool_]:
+def is_stable(q: ArrayLike, gravity: GravityModel) -> NDArray[np.bool_]:
     """Say whether configurations are stable equilibria under their own gravity torque.
 
     Parameters
@@ -18,26 +19,23 @@ def is_stable(q: ArrayLike, gravity: GravityModel, basis: ArrayLike) -> NDArray[
         Configurations (m, n) [rad].
     gravity
         The gravity torque.
-    basis
-        Rows B of the combinations y = B q that the torque depends on, (r, n); along the other
-        directions nothing pushes back and nothing needs to.
 
     Returns
     -------
     (m,) bool array
-        Whether the stiffness dg/dq is positive definite on the span of B.
+        Whether the stiffness dg/dq is positive definite on the combinations of joints that the
+        torque depends on; along other directions nothing pushes back and nothing needs to.
 
     Examples
     --------
     >>> from symbolic.robots import load_robot
     >>> gravity = GravityModel(load_robot("2r"))
-    >>> is_stable([[-1.5, 0.0], [1.5, 0.0]], gravity, np.eye(2))
+    >>> is_stable([[-1.5, 0.0], [1.5, 0.0]], gravity)
     array([ True, False])
     """
-    rows = np.asarray(basis, dtype=float)
-    if not len(rows):
+    span = scipy.linalg.orth(gravity.potential.frequencies.T.astype(float))
+    if not span.size:
         return np.ones(len(np.asarray(q)), dtype=bool)
-    span = np.linalg.qr(rows.T)[0]
     stiffness = span.T @ gravity.stiffness(q) @ span
     return np.asarray(np.linalg.eigvalsh(stiffness)[:, 0] > 0)
 
@@ -57,10 +55,10 @@ def has_stable_image(
     >>> gravity = GravityModel(load_robot("3r"))
     >>> q = np.random.default_rng(0).uniform(-np.pi, np.pi, (4000, 3))
     >>> share = has_stable_image(q, gravity, primary_symmetries(gravity.potential)).mean()
-    >>> print(f"{share:.2f}")
-    0.21
+    >>> bool(0.20 < share < 0.23)
+    True
     """
     found = np.zeros(len(np.asarray(q)), dtype=bool)
     for image in group.orbit(q):
-        found |= is_stable(image, gravity, group.basis)
+        found |= is_stable(image, gravity)
     return found

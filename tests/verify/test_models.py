@@ -109,7 +109,7 @@ def test_orbits_with_and_without_a_stable_member_are_told_apart(arms):
         arm.gravity,
         lambda q: (np.sin(q[:, 1]) * np.sin(q[:, 1] + q[:, 2]) < 0)[:, None] * np.ones((1, 3)),
     )
-    dense, good, bad = verify_model(invariant, arm.gravity, group=arm.group).targets
+    dense, good, bad = verify_model(invariant, arm.gravity, orbits=arm.group).targets
     # physics.md: only where sin q2 sin(q2 + q3) > 0 can a member be stable; 21 % of orbits have one
     assert good.rmse == 0.0
     assert good.count + bad.count == dense.count
@@ -120,7 +120,7 @@ def test_orbits_with_and_without_a_stable_member_are_told_apart(arms):
 
 
 def test_every_orbit_of_the_2r_arm_has_a_stable_member(two_link):
-    judgement = verify_model(two_link.gravity.torque, two_link.gravity, group=two_link.group)
+    judgement = verify_model(two_link.gravity.torque, two_link.gravity, orbits=two_link.group)
     (dense,) = judgement.targets
     assert dense.stable / dense.count == pytest.approx(0.25, abs=0.03)
 
