@@ -9,7 +9,7 @@ from learning.arm import OutcomeKind
 from learning.dynamics.assembly import assemble
 from learning.dynamics.engine import Motions
 from learning.dynamics.engines import new_engine, new_equations
-from learning.dynamics.equations import Array
+from learning.dynamics.equations import Array, Equations
 from learning.physics import (
     EngineName,
     MeasurementNoise,
@@ -63,6 +63,11 @@ class SimulatedBody:
     def n(self) -> int:
         """Number of joints."""
         return self.robot.n
+
+    @property
+    def equations(self) -> Equations:
+        """Equations of motion of the arm, for tests and judges: no learner may ask them."""
+        return self._engine.equations
 
     @property
     def damping(self) -> Array:

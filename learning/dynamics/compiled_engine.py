@@ -73,6 +73,7 @@ class CompiledEngine:
         ends = np.array(q, dtype=float, order="C")
         codes = np.zeros(len(ends), dtype=np.int64)
         seconds = np.zeros(len(ends))
+        steps = np.zeros(len(ends))
         torques = np.array(torques, dtype=float, order="C")
         move_each(
             self._plant,
@@ -83,9 +84,10 @@ class CompiledEngine:
             self._scratch,
             codes,
             seconds,
+            steps,
         )
         kinds = tuple(_KINDS[code] for code in codes.tolist())
-        return Motions(kinds, ends, seconds)
+        return Motions(kinds, ends, seconds, steps)
 
     def wait(self, q: Array, v: Array, torque: Array, seconds: float) -> Motion:
         """Move under a constant torque for a time, settled or not (``kind`` is then TIMEOUT)."""

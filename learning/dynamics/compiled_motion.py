@@ -122,13 +122,13 @@ def move(plant, rest, q, v, torque, duration, scratch):
 
 
 @kernel
-def move_each(plant, rest, q, torques, duration, scratch, codes, seconds):
+def move_each(plant, rest, q, torques, duration, scratch, codes, seconds, steps):
     """Let each start (m, n) move from rest under its torque (m, n); q is moved on in place."""
     v = scratch.vectors[-1]
     for k in range(q.shape[0]):
         for i in range(v.shape[0]):
             v[i] = 0.0
-        codes[k], seconds[k], _ = move(plant, rest, q[k], v, torques[k], duration, scratch)
+        codes[k], seconds[k], steps[k] = move(plant, rest, q[k], v, torques[k], duration, scratch)
 
 
 @kernel

@@ -69,11 +69,14 @@ class Motions:
         Joint angles at the end [rad].
     seconds : (m,) array
         Time that passed [s].
+    steps : (m,) array
+        Integration steps tried.
     """
 
     kinds: tuple[OutcomeKind, ...]
     q: Array
     seconds: Array
+    steps: Array
 
 
 @dataclass(frozen=True, eq=False)

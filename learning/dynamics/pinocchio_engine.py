@@ -70,6 +70,7 @@ class PinocchioEngine:
             tuple(end.kind for end in ends),
             np.array([end.q for end in ends]),
             np.array([end.seconds for end in ends]),
+            np.array([float(end.steps) for end in ends]),
         )
 
     def wait(self, q: Array, v: Array, torque: Array, seconds: float) -> Motion:

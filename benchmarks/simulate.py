@@ -1,0 +1,292 @@
+"""Time the settling of simulated arms, engine beside engine, in one process, taking turns.
+
+Usage: python benchmarks/simulate.py [--json] [--turns 7] [--samples 300] [ROBOT ...]
+
+Every sample starts at rest 0.1 rad from a stable equilibrium and settles under its torque, by the
+same rule (velocity, acceleration, dwell) under the same damping.
+
+* compiled, pinocchio: the two engines of the simulator, to the finished equilibrium.
+* plain loop: Euler steps of 1 ms with pin.aba in Python, to the settle rule.
+* MuJoCo: its integrator implicitfast with steps of 5 ms, to the settle rule.
+* whole step / ABA: one adaptive step of the compiled engine (two evaluations of the dynamics, three
+  linear systems, error control, limits) beside one evaluation of the articulated-body algorithm in
+  C made for the robot, where there is a C compiler.
+
+Times are processor times of this process, so other work on the machine adds little; ratios are
+medians over turns of the ratio within a turn.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+import pinocchio as pin
+
+from benchmarks.compiled_aba import time_compiled_aba
+from learning.arm import OutcomeKind
+from learning.simulation import SimulatedArm
+from symbolic.robots import load_robot
+
+try:
+    import mujoco
+
+    from benchmarks.mujoco_arm import mujoco_arm
+except ImportError:
+    mujoco = None
+
+ROBOTS = ("2r", "3r", "ur5", "panda")
+DEMANDED_COMPILED = {"2r": 400.0, "3r": 400.0, "ur5": 500.0, "panda": 500.0}
+DEMANDED_PINOCCHIO = 10.0
+DEMANDED_STEP = {2: 15.0, 7: 6.0}
+DEMANDED_SEQUENCE = 6.0
+SEQUENCE = 54_000
+PLAIN_STEP = 1e-3
+MUJOCO_STEP = 5e-3
+DISTANCE = 0.1
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Where samples start and what they settle under."""
+
+    q: np.ndarray
+    torques: np.ndarray
+
+
+def near_starts(arm: SimulatedArm, count: int) -> Starts:
+    """Draw stable equilibria and starts 0.1 rad away, all of which settle."""
+    rng = np.random.default_rng(0)
+    equations = arm.equations
+    q, torques = np.empty((0, arm.n)), np.empty((0, arm.n))
+    spread = 0.5
+    while len(q) < count:
+        targets = arm.home + rng.uniform(-spread, spread, (4 * count, arm.n))
+        steps = rng.normal(size=targets.shape)
+        starts = targets + DISTANCE * steps / np.linalg.norm(steps, axis=1, keepdims=True)
+        inside = ((arm.limits[:, 0] < starts) & (starts < arm.limits[:, 1])).all(axis=1)
+        held = np.array([equations.gravity_torque(x) for x in targets])
+        ends = arm.settle_each(starts, held)
+        settled = np.array([kind is OutcomeKind.SETTLED for kind in ends.kinds])
+        # At the target itself, not at another equilibrium under the same torque.
+        near = np.linalg.norm(ends.q - targets, axis=1) < 2.0 * DISTANCE
+        keep = inside & settled & near
+        q, torques = np.vstack([q, starts[keep]]), np.vstack([torques, held[keep]])
+    return Starts(q[:count], torques[:count])
+
+
+def plain_settle(
+    arm: SimulatedArm, model: pin.Model, data: pin.Data, q: np.ndarray, torque: np.ndarray
+) -> np.ndarray:
+    """Settle with Euler steps: what one writes first."""
+    rule, damping = arm.rule, arm.damping
+    low, high = arm.limits.T
+    q, v = q.copy(), np.zeros(arm.n)
+    quiet = 0.0
+    for _ in range(int(rule.time_limit / PLAIN_STEP)):
+        a = pin.aba(model, data, q, v, torque - damping * v)
+        v += PLAIN_STEP * a
+        q += PLAIN_STEP * v
+        if (q < low).any() or (q > high).any():
+            break
+        rests = abs(v).max() < rule.velocity and abs(a).max() < rule.acceleration
+        quiet = quiet + PLAIN_STEP if rests else 0.0
+        if quiet >= rule.dwell:
+            break
+    return q
+
+
+def mujoco_settle(
+    arm: SimulatedArm, model: Any, data: Any, q: np.ndarray, torque: np.ndarray
+) -> np.ndarray:
+    """Settle with MuJoCo's steps."""
+    rule = arm.rule
+    mujoco.mj_resetData(model, data)
+    data.qpos[:] = q
+    data.qfrc_applied[:] = torque
+    quiet = 0.0
+    for _ in range(int(rule.time_limit / MUJOCO_STEP)):
+        mujoco.mj_step(model, data)
+        rests = abs(data.qvel).max() < rule.velocity and abs(data.qacc).max() < rule.acceleration
+        quiet = quiet + MUJOCO_STEP if rests else 0.0
+        if quiet >= rule.dwell:
+            break
+    return data.qpos.copy()
+
+
+def timed(work: Callable[[], Any], samples: int) -> float:
+    """Return the seconds per sample."""
+    start = time.process_time()
+    work()
+    return (time.process_time() - start) / samples
+
+
+def measure(name: str, turns: int, samples: int) -> dict[str, Any]:
+    robot = load_robot(name)
+    compiled = SimulatedArm(robot)
+    reference = SimulatedArm(robot, engine="pinocchio", home=compiled.home)
+    starts = near_starts(compiled, samples)
+    few, fewest = slice(max(samples // 20, 4)), slice(max(samples // 100, 3))
+    model, data = robot.model, robot.model.createData()
+    settled = compiled.settle_each(starts.q, starts.torques)
+    steps = float(settled.steps.mean())
+    ways: dict[str, Callable[[], float]] = {
+        "compiled": lambda: timed(
+            lambda: compiled.settle_each(starts.q, starts.torques), len(starts.q)
+        ),
+        "pinocchio": lambda: timed(
+            lambda: reference.settle_each(starts.q[few], starts.torques[few]), few.stop
+        ),
+        "plain": lambda: timed(
+            lambda: [
+                plain_settle(compiled, model, data, q, t)
+                for q, t in zip(starts.q[fewest], starts.torques[fewest], strict=True)
+            ],
+            fewest.stop,
+        ),
+    }
+    if mujoco is not None:
+        other = mujoco_arm(model, compiled.damping, timestep=MUJOCO_STEP)
+        other_data = mujoco.MjData(other)
+        ways["mujoco"] = lambda: timed(
+            lambda: [
+                mujoco_settle(compiled, other, other_data, q, t)
+                for q, t in zip(starts.q[few], starts.torques[few], strict=True)
+            ],
+            few.stop,
+        )
+    aba = time_compiled_aba(model)
+    if aba is not None:
+        ways["aba"] = lambda: aba(100_000)
+    check(compiled, model, data, starts, settled.q, fewest)
+    taken: dict[str, list[float]] = {way: [] for way in ways}
+    for _ in range(turns):
+        for way, work in ways.items():
+            taken[way].append(work())
+    step = [x / steps for x in taken["compiled"]]
+    return {
+        "robot": name,
+        "joints": robot.n,
+        "steps_per_settle": steps,
+        "seconds_per_settle": {way: statistics.median(taken[way]) for way in ways if way != "aba"},
+        "compiled_vs_plain": median_ratio(taken["plain"], taken["compiled"]),
+        "compiled_vs_plain_demanded": DEMANDED_COMPILED.get(name),
+        "pinocchio_vs_plain": median_ratio(taken["plain"], taken["pinocchio"]),
+        "pinocchio_vs_plain_demanded": DEMANDED_PINOCCHIO,
+        "mujoco_vs_plain": median_ratio(taken["plain"], taken.get("mujoco", [])),
+        "step_seconds": statistics.median(step),
+        "aba_seconds": statistics.median(taken["aba"]) if aba else None,
+        "step_vs_aba": median_ratio(step, taken.get("aba", [])),
+        "step_vs_aba_demanded": DEMANDED_STEP.get(robot.n),
+    }
+
+
+def check(
+    arm: SimulatedArm,
+    model: pin.Model,
+    data: pin.Data,
+    starts: Starts,
+    ends: np.ndarray,
+    few: slice,
+) -> None:
+    """Make sure that the plain loop ends where the compiled engine does."""
+    for q, torque, end in zip(starts.q[few], starts.torques[few], ends[few], strict=True):
+        torque_there = pin.computeGeneralizedGravity(
+            model, data, plain_settle(arm, model, data, q, torque)
+        )
+        there = pin.computeGeneralizedGravity(model, data, end)
+        if abs(torque_there - there).max() > 0.05:
+            raise AssertionError(f"plain loop and engine differ: {torque_there}, {there}")
+
+
+def median_ratio(above: list[float], below: list[float]) -> float | None:
+    """Return the median of the ratios within turns."""
+    ratios = [a / b for a, b in zip(above, below, strict=False)]
+    return statistics.median(ratios) if ratios else None
+
+
+def measure_sequence() -> dict[str, Any]:
+    """Time 54,000 sequential settled samples of the 2R arm, commanded from Python."""
+    arm = SimulatedArm(load_robot("2r"))
+    rng = np.random.default_rng(0)
+    targets = arm.home + rng.uniform(-0.6, 0.6, (SEQUENCE, 2))
+    torques = [arm.equations.gravity_torque(q) for q in targets]
+    arm.apply(torques[0])
+    start = time.process_time()
+    settled = sum(arm.apply(torque).kind is OutcomeKind.SETTLED for torque in torques)
+    seconds = time.process_time() - start
+    return {
+        "robot": "2r",
+        "samples": SEQUENCE,
+        "settled": settled,
+        "sequence_seconds": seconds,
+        "sequence_seconds_demanded": DEMANDED_SEQUENCE,
+    }
+
+
+def table(rows: list[dict[str, Any]], sequence: dict[str, Any] | None) -> str:
+    head = ["robot", "compiled [us]", "pinocchio [us]", "MuJoCo [us]", "plain loop [us]"]
+    head += ["compiled: times plain (demanded)", "pinocchio: times plain (demanded)"]
+    head += ["steps", "whole step [ns]", "ABA [ns]", "step / ABA (demanded)"]
+    lines = [" | ".join(head), " | ".join(["---"] * len(head))]
+    for row in rows:
+        cells = [row["robot"]]
+        seconds = row["seconds_per_settle"]
+        cells += [micro(seconds.get(way)) for way in ("compiled", "pinocchio", "mujoco", "plain")]
+        cells.append(beside(row["compiled_vs_plain"], row["compiled_vs_plain_demanded"], ">="))
+        cells.append(beside(row["pinocchio_vs_plain"], row["pinocchio_vs_plain_demanded"], ">="))
+        cells.append(f"{row['steps_per_settle']:.0f}")
+        cells.append(f"{1e9 * row['step_seconds']:.0f}")
+        cells.append(f"{1e9 * row['aba_seconds']:.0f}" if row["aba_seconds"] else "")
+        cells.append(beside(row["step_vs_aba"], row["step_vs_aba_demanded"], "<="))
+        lines.append(" | ".join(cells))
+    text = "\n".join(f"| {line} |" for line in lines)
+    if sequence is not None:
+        text += (
+            f"\n\n{sequence['samples']} sequential settled samples of the 2R arm, from Python: "
+            f"{sequence['sequence_seconds']:.2f} s (demanded: at most "
+            f"{sequence['sequence_seconds_demanded']:.0f} s)"
+        )
+    return text
+
+
+def micro(seconds: float | None) -> str:
+    return "" if seconds is None else f"{1e6 * seconds:.4g}"
+
+
+def beside(value: float | None, demanded: float | None, relation: str) -> str:
+    if value is None:
+        return ""
+    return f"{value:.3g}" + (f" ({relation} {demanded:g})" if demanded else "")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("robots", nargs="*", default=list(ROBOTS), help="arms, all by default")
+    parser.add_argument("--json", action="store_true", help="write JSON instead of a table")
+    parser.add_argument("--turns", type=int, default=7, help="turns of each engine")
+    parser.add_argument("--samples", type=int, default=300, help="settled samples per turn")
+    options = parser.parse_args()
+    rows = []
+    for name in options.robots:
+        print(name, file=sys.stderr)
+        rows.append(measure(name, options.turns, options.samples))
+    sequence = measure_sequence() if "2r" in options.robots else None
+    if options.json:
+        print(json.dumps(rows + ([sequence] if sequence else []), indent=1))
+    else:
+        print(table(rows, sequence))
+
+
+if __name__ == "__main__":
+    main()
