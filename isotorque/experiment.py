@@ -199,6 +199,8 @@ def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOut
             for motion in scheme.discover():
                 result.motions.append(motion)
                 progress("discovering symmetries", len(result.motions), 0, _gate_note(scheme))
+            count = len(result.motions)
+            progress("discovering symmetries", count, count, _gate_note(scheme))
         recorded.phase = "learning"
         with _timed(clock, "learning"):
             _learn(result, progress)

@@ -36,6 +36,9 @@ ONLINE_LEARNERS: dict[str, Callable[[SymmetryGroup | None], Any]] = {
 }
 """Names and factories; every factory takes the group to exploit (None: no symmetries)."""
 
+EQUIVARIANT_LEARNERS = frozenset({"recursive-least-squares"})
+"""Learners whose predictions obey the relations they exploit exactly."""
+
 
 def online_learner(name: str, group: SymmetryGroup | None) -> Any:
     """Return a fresh online learner.
