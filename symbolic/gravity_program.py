@@ -9,8 +9,9 @@ from typing import Literal
 from symbolic.gravity_recursion import GravityChain
 from symbolic.trigonometric import TrigonometricPolynomial
 
-WAVE_COST = 20
-"""What a sine or cosine costs, in additions and multiplications."""
+WAVE_COST, SECOND_WAVE_COST = 40, 20
+"""What a sine or cosine costs, in additions and multiplications; C compilers compute the sine and
+cosine of one angle together, so the second costs less (measured by benchmarks/gravity_forms.py)."""
 
 
 Term = tuple[float, tuple[str, ...]]
@@ -76,12 +77,13 @@ class GravityProgram:
 
     @property
     def cost(self) -> int:
-        """Additions and multiplications, a sine or cosine counted as ``WAVE_COST``.
-
-        A sine and a cosine of one angle are computed together by C compilers: the second is free.
-        """
-        angles = {wave.frequency for wave in self.waves}
-        total = sum(WAVE_COST + sum(map(bool, k)) - 1 for k in angles)
+        """Additions and multiplications; sines and cosines as `WAVE_COST`, `SECOND_WAVE_COST`."""
+        total = 0
+        angles: set[tuple[int, ...]] = set()
+        for wave in self.waves:
+            again = wave.frequency in angles
+            total += SECOND_WAVE_COST if again else WAVE_COST + sum(map(bool, wave.frequency)) - 1
+            angles.add(wave.frequency)
         for terms in (*(s.terms for s in self.sums), *self.torques):
             total += sum(len(names) - (abs(factor) == 1) for factor, names in terms)
             total += max(len(terms) - 1, 0)

@@ -107,9 +107,9 @@ class GravityChain:
             If the last axis of ``q`` does not hold n angles.
         """
         points = self._points(q)
-        torques = np.empty(points.shape)
-        _torque(self.parents, self._table, points.ravel(), torques.ravel())
-        return torques
+        flat = points if points.ndim == 1 else points.ravel()
+        _torque(self.parents, self._table, flat, flat)  # angles become torques in place
+        return points
 
     def stiffness(self, q: ArrayLike) -> Floats:
         """Return dg/dq at ``q`` (..., n) [rad], of shape (..., n, n) [N m/rad].
@@ -127,7 +127,7 @@ class GravityChain:
     def _points(self, q: ArrayLike) -> Floats:
         # Always a copy: compiled code is specialised to writable arrays in C order.
         points = np.array(q, dtype=np.float64, order="C")
-        if points.shape[-1:] != (self.n,):
+        if points.shape[-1:] != self.parents.shape:
             raise InputError("configuration", "shape", points.shape, f"(..., {self.n})")
         return points
 
@@ -201,6 +201,7 @@ def _passes(parents, table, q, start, work):
 
 @njit(cache=True)
 def _torque(parents, table, q, out):
+    """Compute torques; ``out`` may be ``q``."""
     n = len(parents)
     work = np.empty((n + 1, 12))
     for start in range(0, len(q), n):
