@@ -157,8 +157,7 @@ def verify_model(
 
     sets = (dense, *_by_stability(dense, gravity, orbits), *targets)
     results = tuple(
-        _on(chosen, errors, active, int(is_stable(chosen.q, gravity).sum()))
-        for chosen in sets
+        _on(chosen, errors, active, int(is_stable(chosen.q, gravity).sum())) for chosen in sets
     )
 
     def size(q: Array) -> Array:

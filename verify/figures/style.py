@@ -28,7 +28,7 @@ INK, FAINT, PAPER = "#1b1c1d", "#8a8b8c", "#fdfefc"
 """Lines and text, grid, and background: on a page they follow its light or dark scheme."""
 
 CYCLE = (BLUE, RED, GREEN, ORANGE, PINK, SKY)
-JOINTS = (BLUE, GREEN, ORANGE, PINK, SKY, INK)
+JOINTS = (BLUE, ORANGE, INK, PINK, SKY, GREEN)
 """Colours of sets and learners, and of joints, where red is kept for what went wrong."""
 
 _VARIABLES = {

@@ -194,7 +194,9 @@ def static_torque_map(
 
 
 def _legend(ax: Axes, columns: int) -> None:
+    if not columns:
+        return
     ax.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=max(columns, 1), borderaxespad=0.1,
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.1,
         handlelength=1.4, columnspacing=1.2,
     )  # fmt: skip
