@@ -185,6 +185,10 @@ def _refined(
     points = _onto_curve(component, line, level)
     if closed:
         points[-1] = points[0]
+    # through a grid point the contour comes in twice
+    points = points[np.append(True, np.abs(np.diff(points, axis=0)).max(axis=1) > 1e-12)]
+    if len(points) < 2:
+        return []
     for _ in range(_ROUNDS):
         error = _worst(component, points, level)
         parts = np.ceil(np.sqrt(np.minimum(error / (0.7 * tolerance), _MOST_PARTS**2)))

@@ -161,7 +161,7 @@ def level_set(
     orbits = [_orbit(y, equations, group) for y in result.y]
     # a bound on the torques proves emptiness, a search that finds nothing does not
     complete = len(equations.targets) == 0
-    return _assemble(orbits, equations, complete, int(result.hits.min(initial=0)))
+    return _assemble(orbits, equations, complete, int(result.hits.min()) if len(result.hits) else 0)
 
 
 def _orbit(y: Floats, equations: LevelSetEquations, group: SymmetryGroup) -> Floats:

@@ -56,7 +56,8 @@ def solve_in_closed_form(equations: LevelSetEquations) -> Floats:
             first = np.arcsin(x)
             both = [first] if abs(x) >= 1 - DOUBLE else [first, np.pi - first]
             angles.append([shift + angle for angle in both])
-        theta = np.array(list(itertools.product(*angles))).reshape(-1, r)
+        choices = list(itertools.product(*angles))
+        theta = np.array(choices).reshape(len(choices), r)
         y = np.linalg.solve(L, theta.T).T
-        found.append((y[:, None] + translations).reshape(-1, r))
+        found.append((y[:, None] + translations).reshape(len(y) * len(translations), r))
     return np.asarray(np.remainder(np.concatenate(found), 2 * np.pi))

@@ -16,7 +16,7 @@ BATCH = 64
 LEAST_STARTS = 256
 """Starts per target before the search may end."""
 HITS = 6
-"""The search ends when every orbit was reached this often."""
+"""The search ends when every orbit of regular solutions was reached this often."""
 SINGULAR = 1e-7
 """Stiffness this small, relative to the largest torque, counts as none."""
 MOST_SINGULAR = 16
@@ -73,7 +73,7 @@ def search(
         orbits: list[_Orbit] = []
         tried = 0
         while starts + tried < max_starts and (
-            tried < LEAST_STARTS or any(orbit.hits < HITS for orbit in orbits)
+            tried < LEAST_STARTS or any(orbit.hits < HITS for orbit in orbits if not orbit.singular)
         ):
             tried += BATCH
             for y in newton(equations, rng.uniform(0, 2 * np.pi, (BATCH, len(goal))), goal):
