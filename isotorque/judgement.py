@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 
 PAPER_RMSE = 0.0053
 """The paper's 2R result [N m] (section 7.1.1), drawn as a line to compare with."""
+CURVE_TOLERANCE = 0.01
+"""Accuracy of the curves in pictures [N m]: finer than a line is wide."""
 EQUIVARIANCE = 1e-9
 """Departure from equivariance that counts as none [N m]."""
 
@@ -172,7 +174,7 @@ def _level_sets(run: RunOutcome) -> LevelSetReport | None:
     curves: list[tuple[int, int, Array]] = []
     if run.robot.n == 2 and run.group.rank == 2:
         for joint in range(2):
-            lines = level_curves(potential, joint, float(target[joint]))
+            lines = level_curves(potential, joint, float(target[joint]), tolerance=CURVE_TOLERANCE)
             signs = np.sign(lines.torques).astype(int)
             curves += [(joint, int(s), c) for s, c in zip(signs, lines.curves, strict=True)]
     return LevelSetReport(
