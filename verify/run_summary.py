@@ -65,7 +65,7 @@ def summarise_discovery(
         discovered[-1] += int(motion.new)
     n = len(motions[0].outcome.q) if motions else 0
     return DiscoveryReport(
-        targets=np.array(targets).reshape(-1, n),
+        targets=np.array(targets).reshape(len(targets), n),
         discovered=np.array(discovered, dtype=np.int64),
         profiles=len(profiles),
         babbling=len(motions) - len(profiles),
@@ -142,9 +142,12 @@ def summarise_exploration(
     """
     ends = Counter(step.outcome.kind for step in steps)
     n = len(steps[0].torque) if steps else 0
-    seen = np.array([step.outcome.q for step in steps if step.learned]).reshape(-1, n)
+    learned = [step.outcome.q for step in steps if step.learned]
+    seen = np.array(learned).reshape(len(learned), n)
     shares = [step.explored for step in steps if step.explored is not None]
-    images = np.zeros((0, n)) if group is None else wrap(group.orbit(seen)[1:]).reshape(-1, n)
+    images = np.zeros((0, n))
+    if group is not None and learned:
+        images = wrap(group.orbit(seen)[1:]).reshape(-1, n)  # the first is the identity
     return ExplorationReport(
         explored=thinned(seen),
         images=thinned(images, MOST_IMAGES),
