@@ -1,6 +1,6 @@
 """Time the derivation of gravity torque and symmetry group beside other ways to get the torque.
 
-Usage: python benchmarks/derive.py [--json] [--repeats 5] [--limit 20] [ROBOT ...]
+Usage: python -m benchmarks.derive [--json] [--repeats 5] [--limit 20] [ROBOT ...]
 
 All run in one process after import, taking turns, on the same URDF files: the built-in arms and,
 where the package example-robot-data is installed, three arms from it. Times are medians of CPU
@@ -25,11 +25,9 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
-from xml.etree.ElementTree import SubElement, tostring
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -37,12 +35,11 @@ import casadi
 import numpy as np
 import pinocchio as pin
 import sympy
-from defusedxml import ElementTree
 
+from benchmarks.urdf_arms import Subject, subjects
 from symbolic.gravity import GravityModel
 from symbolic.kinematic_tree import KinematicTree, human_arm, planar_arm
 from symbolic.potential import derive_potential
-from symbolic.robots import Robot, builtin_robots, load_robot
 from symbolic.symmetries import primary_symmetries
 
 try:
@@ -50,23 +47,9 @@ try:
 except ImportError:
     KinDynComputations = None
 
-EXAMPLE_ROBOTS = {
-    "z1": "z1_description/urdf/z1.urdf",
-    "xarm7": "xarm_description/urdf/xarm7.urdf",
-    "talos_left_arm": "talos_data/robots/talos_left_arm.urdf",
-}
 DEMANDED = {"panda": 0.2, "talos_left_arm": 1.0}
 DEMANDED_SMALL = 0.05  # arms of six or seven joints with up to 60 frequencies
 DEMANDED_PARAMETRIC = 2.0
-
-
-@dataclass(frozen=True)
-class Subject:
-    """An arm to derive: the robot, and its URDF file with the origins that adam insists on."""
-
-    name: str
-    robot: Robot
-    urdf: Path
 
 
 class OutOfTimeError(Exception):
@@ -161,49 +144,6 @@ METHODS: dict[str, Callable[[Subject], Callable[[np.ndarray], np.ndarray]]] = {
     **({"adam": adam} if KinDynComputations else {}),
     "CasADi": casadi_gradient,
 }
-
-
-# -- subjects -----------------------------------------------------------------------------------
-
-
-def subjects(names: list[str], folder: Path) -> list[Subject]:
-    """Return the arms asked for, all by default; writes URDF files to ``folder``."""
-    built_in = Path(sys.modules["symbolic.robots"].__file__ or "").parent / "robot_files"
-    files = {arm.name: built_in / f"{arm.name}.urdf" for arm in builtin_robots()}
-    installed = example_robots()
-    if installed is not None:
-        files |= {name: installed / path for name, path in EXAMPLE_ROBOTS.items()}
-    found = []
-    for name, path in files.items():
-        if (not names or name in names) and path.is_file():
-            explicit = folder / f"{name}.urdf"
-            explicit.write_text(with_origins(path.read_text()))
-            found.append(Subject(name, load_robot(path), explicit))
-    return found
-
-
-def with_origins(urdf: str) -> str:
-    """Write out the origins that URDF lets one leave out; leave out all but links and joints."""
-    root = ElementTree.fromstring(urdf)
-    for element in list(root):
-        if element.tag not in ("link", "joint"):
-            root.remove(element)
-    for element in (*root.iter("joint"), *root.iter("inertial")):
-        if element.tag == "inertial" or element.find("parent") is not None:
-            origin = element.find("origin")
-            if origin is None:
-                origin = SubElement(element, "origin")
-            for field in ("xyz", "rpy"):
-                origin.set(field, origin.get(field, "0 0 0"))
-    return tostring(root, encoding="unicode")
-
-
-def example_robots() -> Path | None:
-    for entry in sys.path:
-        folder = Path(entry) / "cmeel.prefix" / "share" / "example-robot-data" / "robots"
-        if folder.is_dir():
-            return folder
-    return None
 
 
 # -- measuring ----------------------------------------------------------------------------------

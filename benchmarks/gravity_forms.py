@@ -1,6 +1,6 @@
 """Time the two forms of the gravity torque, normal form and recursion, and count their operations.
 
-Usage: python benchmarks/gravity_forms.py [--json] [--turns 5]
+Usage: python -m benchmarks.gravity_forms [--json] [--turns 5]
 
 Nanoseconds per configuration, medians of CPU time taken in turns: in Python for one configuration
 and within a batch, Pinocchio called from Python beside it; in C within a loop, called from C. The

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import sympy
-from flint import fmpq
+from flint import fmpq, fmpz
 from numpy.typing import ArrayLike, NDArray
 
 from symbolic.errors import InputError
@@ -71,12 +71,9 @@ def _converted(array: NDArray[Any], convert: Callable[[Any], Any]) -> Coefficien
 def _to_rational(value: Any) -> fmpq:
     if isinstance(value, fmpq):
         return value
-    try:
-        return fmpq(value)
-    except TypeError:
-        raise InputError(
-            _WHERE, "coefficient", value, "a float, an exact rational or a SymPy expression"
-        ) from None
+    if isinstance(value, int | np.integer | fmpz):
+        return fmpq(int(value))
+    raise InputError(_WHERE, "coefficient", value, "a float, an exact rational or SymPy expression")
 
 
 def to_float(value: Any) -> float:
