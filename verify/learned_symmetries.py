@@ -14,7 +14,7 @@ from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
 from symbolic.symmetries import primary_symmetries
 from verify.bounds import learned_map_bound, relation_error_bound
 from verify.relations import describe_relation, verify_relation
-from verify.run_report import RelationReport, SymmetryReport
+from verify.run_parts import RelationReport, SymmetryReport
 from verify.verdict import Status, Verdict
 
 Array = NDArray[np.float64]

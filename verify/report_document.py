@@ -12,7 +12,8 @@ import numpy as np
 from symbolic.relations import SymmetryGroup, SymmetryRelation
 from verify.relation_files import relations_document
 from verify.relations import describe_relation
-from verify.run_report import ExplorationReport, RunReport, SymmetryReport
+from verify.run_parts import ExplorationReport, SymmetryReport
+from verify.run_report import RunReport
 from verify.verdict import Verdict
 
 FORMAT = 1

@@ -11,7 +11,8 @@ from verify.figures.configurations import domain_map, explored_map
 from verify.figures.learning_curves import learning_curves
 from verify.figures.level_sets import level_set_map, stick_figure
 from verify.figures.torques import joint_trajectories, static_torque_map, torque_profiles
-from verify.run_report import LevelSetReport, RunReport
+from verify.run_parts import LevelSetReport
+from verify.run_report import RunReport
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,19 +1,20 @@
-"""What the report of a run shows: one frozen record per part of the scheme."""
+"""What the report of a run shows."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
-from symbolic.relations import SymmetryGroup, SymmetryRelation
 from verify.figures.learning_curves import LearningCurve
-from verify.figures.torques import ProfileTrace
 from verify.models import ModelJudgement
+from verify.run_parts import (
+    DiscoveryReport,
+    DomainReport,
+    ExplorationReport,
+    LevelSetReport,
+    StaticTorqueReport,
+    SymmetryReport,
+)
 from verify.verdict import Verdict, all_passed
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -74,226 +75,6 @@ class Stage:
     seconds: float
     motions: int | None = None
     simulated_seconds: float | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class LevelSetReport:
-    """All configurations of one absolute torque (Fig. 2).
-
-    Attributes
-    ----------
-    torque : (n,) array
-        The torque [N m].
-    q : (m, n) array
-        The configurations [rad].
-    sets : (m,) int array
-        Primary set of each, from 0.
-    stable : (m,) bool array
-        Whether the arm can hold itself there.
-    curves : tuple of (component, sign, (p, 2) array)
-        Component-wise level sets; two joints only.
-    links : (m, joints + 1, 2) array or None
-        Joints and tip in the plane of gravity, for stick figures [m].
-    complete : bool
-        Whether these are provably all, or "at least" these.
-    """
-
-    torque: Array
-    q: Array
-    sets: NDArray[np.int64]
-    stable: NDArray[np.bool_]
-    curves: tuple[tuple[int, int, Array], ...] = ()
-    links: Array | None = None
-    complete: bool = True
-
-
-@dataclass(frozen=True, eq=False)
-class RelationReport:
-    """One learned relation beside the truth.
-
-    Attributes
-    ----------
-    relation : SymmetryRelation
-        As learned.
-    verdict : Verdict
-        Judged on its own.
-    bound : (n,) array
-        Torque error it can cause, over all configurations [N m].
-    known : str
-        How it is known: observed, implied by the group, identified, exact ...
-    place : int or None
-        Number, from 1, of the true relation it stands for; None for a false one.
-    offset_error : float or None
-        Largest error of its offset d, modulo 2 pi [rad].
-    standard_error : (r,) array or None
-        What the data say of that error [rad].
-    support : int or None
-        Number of distinct torques whose recorded configurations obey it.
-    """
-
-    relation: SymmetryRelation
-    verdict: Verdict
-    bound: Array
-    known: str
-    place: int | None
-    offset_error: float | None = None
-    standard_error: Array | None = None
-    support: int | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class SymmetryReport:
-    """Learned relations beside the complete true group.
-
-    Attributes
-    ----------
-    truth : SymmetryGroup
-        The exact group.
-    relations : tuple of RelationReport
-        What was learned; empty where relations were given.
-    method : str
-        How.
-    missing : str
-        What the data could not tell; empty where nothing is missing.
-    """
-
-    truth: SymmetryGroup
-    relations: tuple[RelationReport, ...]
-    method: str
-    missing: str = ""
-
-    @property
-    def found(self) -> int:
-        """Number of true relations among the learned ones."""
-        return len({entry.place for entry in self.relations if entry.place is not None})
-
-    @property
-    def false(self) -> int:
-        """Number of learned relations that stand for no true one."""
-        return sum(entry.place is None for entry in self.relations)
-
-
-@dataclass(frozen=True)
-class Gate:
-    """What was known after a target torque (n_sym >= n_min of Fig. 8)."""
-
-    targets: int
-    order: int
-    passed: bool
-    missing: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class DiscoveryReport:
-    """What symmetry discovery did (Algorithm 1).
-
-    Attributes
-    ----------
-    targets : (t, n) array
-        Target torques tau* [N m].
-    discovered : (t,) int array
-        Different configurations settled in for each of them.
-    profiles, babbling : int
-        Torque profiles played; constant torques tried.
-    settled, limit_hits, timeouts : int
-        How these motions ended.
-    n_min : int
-        Relations needed before learning began.
-    gates : tuple of Gate
-        What was known after each target torque.
-    traces : tuple of ProfileTrace
-        Profiles played for one target torque (Fig. 3 and 4).
-    """
-
-    targets: Array
-    discovered: NDArray[np.int64]
-    profiles: int
-    babbling: int
-    settled: int
-    limit_hits: int
-    timeouts: int
-    n_min: int
-    gates: tuple[Gate, ...] = ()
-    traces: tuple[ProfileTrace, ...] = ()
-
-
-@dataclass(frozen=True, eq=False)
-class StaticTorqueReport:
-    """The estimated set of static torques (SST, Fig. 7).
-
-    Attributes
-    ----------
-    admissible, inadmissible : (m, n), (k, n) arrays
-        Torques the arm settled under, and those that drove it to a limit or a time out [N m].
-    triangles : (t, 3, 2) array or None
-        Corners of the estimated region [N m]; two joints only.
-    """
-
-    admissible: Array
-    inadmissible: Array
-    triangles: Array | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class DomainReport:
-    """The domain explored (BCTS, Fig. 6).
-
-    Attributes
-    ----------
-    basis : (r, n) int array
-        B of the coordinates y = B q.
-    halfspaces : (f, r + 1) array
-        Rows [a.., b]: a . y <= b.
-    vertices : (v, r) array
-        Corners in y [rad].
-    volume : float
-        In y coordinates [rad^r].
-    order : int
-        By how much it is smaller than the whole space.
-    center : (n,) array
-        Its centre [rad].
-    polygon : (v, 2) array or None
-        Corners in (q1, q2) [rad], for two joints of full rank.
-    images : (g, v, 2) array or None
-        The same of its images under the group.
-    """
-
-    basis: NDArray[np.int64]
-    halfspaces: Array
-    vertices: Array
-    volume: float
-    order: int
-    center: Array
-    polygon: Array | None = None
-    images: Array | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class ExplorationReport:
-    """What exploration did (Algorithm 2, Fig. 10).
-
-    Attributes
-    ----------
-    explored : (m, n) array
-        Configurations learned from [rad] (evenly thinned where there were very many).
-    images : (k, n) array
-        Where they taught the torque by symmetry [rad] (likewise).
-    commands, settled, limit_hits, timeouts : int
-        Torques commanded and how they ended.
-    projected : int
-        Commands moved to the nearest static torque.
-    explored_share : float or None
-        Share of the domain explored.
-    """
-
-    explored: Array
-    images: Array
-    commands: int
-    settled: int
-    limit_hits: int
-    timeouts: int
-    projected: int = 0
-    explored_share: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from learning.static_torques import StaticTorqueSet
 from symbolic.domain import FundamentalDomain
 from symbolic.relations import SymmetryGroup, wrap
 from verify.figures.torques import ProfileTrace
-from verify.run_report import (
+from verify.run_parts import (
     DiscoveryReport,
     DomainReport,
     ExplorationReport,

@@ -24,16 +24,14 @@ from verify.report import render_report, verdicts_page, write_report
 from verify.report_document import report_document
 from verify.report_figures import report_pictures
 from verify.report_text import map_lines, matrix, number, vector
-from verify.run_report import (
+from verify.run_parts import (
     DiscoveryReport,
     ExplorationReport,
     Gate,
     LevelSetReport,
-    RunReport,
-    RunSetup,
-    Stage,
     StaticTorqueReport,
 )
+from verify.run_report import RunReport, RunSetup, Stage
 from verify.run_summary import summarise_domain
 from verify.verdict import Status, Verdict
 
