@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -29,22 +30,22 @@ class GroupArrays(Protocol):
     """
 
     @property
-    def basis(self) -> Array:
+    def basis(self) -> Any:
         """See above."""
         ...
 
     @property
-    def A_sat(self) -> Array:
+    def A_sat(self) -> Any:
         """See above."""
         ...
 
     @property
-    def d_sat(self) -> Array:
+    def d_sat(self) -> Any:
         """See above."""
         ...
 
     @property
-    def Y(self) -> Array:
+    def Y(self) -> Any:
         """See above."""
         ...
 
@@ -168,7 +169,7 @@ class SavedGroup:
     Y: Array
 
     @classmethod
-    def from_arrays(cls, arrays: dict[str, Array]) -> SavedGroup:
+    def from_arrays(cls, arrays: Mapping[str, Array]) -> SavedGroup:
         """Inverse of ``SymmetryCoordinates.to_arrays``."""
         return cls(*(np.asarray(arrays[f"group_{k}"]) for k in ("basis", "A_sat", "d_sat", "Y")))
 

@@ -1,4 +1,4 @@
-"""Cell list on a torus: the points near a point, at a cost that does not grow with their number."""
+"""Cell list on a torus: where to look for the points near a point."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import itertools
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -17,41 +16,47 @@ LARGEST_GRID = 2_000_000
 
 
 class CellGrid(NamedTuple):
-    """Box cells over [-pi, pi)^r with a margin of ghost cells, and a linked list in each.
+    """Box cells over [-pi, pi)^r with a margin of ghost cells, entries sorted by cell.
 
     A point is entered once per periodic image that lies in the margin, so that a search never has
-    to wrap anything: it visits the cells at fixed offsets from the cell of the query and compares
-    unwrapped positions. A search radius wider than the torus sees several images of one point.
+    to wrap anything: it visits rows of cells at fixed offsets from the cell of the query and
+    compares unwrapped positions. As entries are sorted by cell, a row is one run of memory. A
+    search radius wider than the torus sees several images of one point.
 
     Attributes
     ----------
+    axes : tuple of r zeros
+        Its length tells the compiler the number of coordinates: loops over them are unrolled, and
+        vectors kept in tuples of this kind stay in registers (twice as fast as small arrays).
     isometry : (r, r) array
-        L; distances are ``|L dy|``.
-    cells, margin : (r,) integer arrays
-        Cells per turn and ghost cells on either side. No cells (zeros): scan everything.
-    strides, offsets : integer arrays
-        Steps of the flat cell index per axis (r,), and to every cell to be visited (o,).
-    head : (number of cells,) integer array
-        First entry of each cell, -1 if there is none.
-    following, prototype : (e,) integer arrays
-        Next entry of the same cell (-1: none) and the number of the point it is an image of.
+        L, upper triangular; distances are ``|L dy|``.
+    cells, margin, strides : (r,) integer arrays
+        Cells per turn, ghost cells on either side, steps of the flat cell index. No cells (zeros):
+        scan everything.
+    row_first, row_cells : integer arrays
+        Rows to be visited: step to the first cell, number of cells.
+    start : (number of cells + 1,) integer array
+        First entry of every cell.
     position : (e, r) array
-        Position ``L y`` of the image.
+        Position ``L y`` of every entry.
+    number : (e,) integer array
+        The point it is an image of.
     point : (p, r) array
         Wrapped coordinates y of every point.
     search_radius : float
         Radius within which every image is found.
     """
 
+    axes: tuple[float, ...]
     isometry: Array
     cells: Integers
     margin: Integers
     strides: Integers
-    offsets: Integers
-    head: NDArray[np.int32]
-    following: NDArray[np.int32]
-    prototype: NDArray[np.int32]
+    row_first: Integers
+    row_cells: Integers
+    start: NDArray[np.int32]
     position: Array
+    number: NDArray[np.int32]
     point: Array
     search_radius: float
 
@@ -62,7 +67,7 @@ def make_cell_grid(isometry: Array, search_radius: float, cell_side: float) -> C
     Parameters
     ----------
     isometry : (r, r) array
-        L of the distance ``|L dy|``.
+        L of the distance ``|L dy|``, upper triangular.
     search_radius : float
         Largest distance at which points must be found.
     cell_side : float
@@ -71,7 +76,7 @@ def make_cell_grid(isometry: Array, search_radius: float, cell_side: float) -> C
     Returns
     -------
     CellGrid
-        With room for no entry yet (``with_room``). Without cells where their number would exceed
+        With room for no point yet (``with_room``). Without cells where their number would exceed
         ``LARGEST_GRID`` (many dimensions): then every search looks at all points.
     """
     rank = len(isometry)
@@ -87,21 +92,23 @@ def make_cell_grid(isometry: Array, search_radius: float, cell_side: float) -> C
     if np.prod(padded.astype(float)) > LARGEST_GRID:
         cells = np.zeros(rank, dtype=np.int64)
         margin = np.zeros(rank, dtype=np.int64)
-        offsets = np.zeros(0, dtype=np.int64)
-        head = np.zeros(0, dtype=np.int32)
+        row_first = row_cells = np.zeros(0, dtype=np.int64)
+        start = np.zeros(0, dtype=np.int32)
     else:
-        offsets = _reached_offsets(isometry * width, margin, search_radius) @ strides
-        head = np.full(int(np.prod(padded)), -1, dtype=np.int32)
+        row_first, row_cells = _rows(_reached_offsets(isometry * width, margin, search_radius))
+        row_first = row_first @ strides
+        start = np.zeros(int(np.prod(padded)) + 1, dtype=np.int32)
     return CellGrid(
+        (0.0,) * rank,
         np.ascontiguousarray(isometry, dtype=float),
         cells,
         margin,
         strides,
-        np.sort(offsets),
-        head,
-        np.zeros(0, dtype=np.int32),
-        np.zeros(0, dtype=np.int32),
+        row_first,
+        row_cells,
+        start,
         np.zeros((0, rank)),
+        np.zeros(0, dtype=np.int32),
         np.zeros((0, rank)),
         float(search_radius),
     )
@@ -109,7 +116,7 @@ def make_cell_grid(isometry: Array, search_radius: float, cell_side: float) -> C
 
 def images_per_point(grid: CellGrid) -> int:
     """Largest number of entries one point can need (0 without cells)."""
-    if grid.head.size == 0:
+    if grid.start.size == 0:
         return 0
     return int(np.prod(1 + -(-2 * grid.margin // grid.cells)))
 
@@ -117,13 +124,13 @@ def images_per_point(grid: CellGrid) -> int:
 def sees_several_images(grid: CellGrid) -> bool:
     """Whether one point can be found at two periodic images in one search."""
     reach = grid.search_radius * np.linalg.norm(np.linalg.inv(grid.isometry), axis=1)
-    return bool(grid.head.size and np.any(reach >= np.pi))
+    return bool(grid.start.size and np.any(reach >= np.pi))
 
 
 def with_room(grid: CellGrid, points: int) -> CellGrid:
     """The same list with room for ``points`` points (never less than it has)."""
     points = max(points, len(grid.point))
-    entries = max(points * images_per_point(grid), len(grid.following))
+    entries = max(points * images_per_point(grid), len(grid.number))
 
     def longer(old: NDArray, length: int) -> NDArray:
         new = np.zeros((length, *old.shape[1:]), dtype=old.dtype)
@@ -131,9 +138,8 @@ def with_room(grid: CellGrid, points: int) -> CellGrid:
         return new
 
     return grid._replace(
-        following=longer(grid.following, entries),
-        prototype=longer(grid.prototype, entries),
         position=longer(grid.position, entries),
+        number=longer(grid.number, entries),
         point=longer(grid.point, points),
     )
 
@@ -162,120 +168,13 @@ def _reached_offsets(cell: Array, margin: Integers, radius: float) -> Integers:
     return np.asarray(steps[lower <= radius**2 * (1 + 1e-9)])
 
 
-@njit(cache=True)
-def cell_of(grid, y):
-    """Flat index of the cell that holds the wrapped point y."""
-    flat = 0
-    for axis in range(y.size):
-        count = grid.cells[axis]
-        step = int(np.floor((y[axis] + np.pi) * (count / (2 * np.pi))))
-        flat += (min(max(step, 0), count - 1) + grid.margin[axis]) * grid.strides[axis]
-    return flat
+def _rows(steps: Integers) -> tuple[Integers, Integers]:
+    """Runs along the last axis: first step (o, r) and length (o,) of each.
 
-
-@njit(cache=True)
-def enter(grid, entries, number, y):
-    """Enter point ``number`` at the wrapped y with all its images; the new number of entries."""
-    rank = y.size
-    for axis in range(rank):
-        grid.point[number, axis] = y[axis]
-    if grid.head.size == 0:
-        return entries
-    first = np.empty(rank, dtype=np.int64)
-    shift = np.empty(rank, dtype=np.int64)
-    last = np.empty(rank, dtype=np.int64)
-    home = np.empty(rank, dtype=np.int64)
-    for axis in range(rank):
-        count = grid.cells[axis]
-        step = int(np.floor((y[axis] + np.pi) * (count / (2 * np.pi))))
-        home[axis] = min(max(step, 0), count - 1)
-        first[axis] = -((home[axis] + grid.margin[axis]) // count)
-        last[axis] = (count + grid.margin[axis] - 1 - home[axis]) // count
-        shift[axis] = first[axis]
-    while True:
-        flat = 0
-        for axis in range(rank):
-            step = home[axis] + shift[axis] * grid.cells[axis]
-            flat += (step + grid.margin[axis]) * grid.strides[axis]
-        for i in range(rank):
-            value = 0.0
-            for j in range(rank):
-                value += grid.isometry[i, j] * (y[j] + 2 * np.pi * shift[j])
-            grid.position[entries, i] = value
-        grid.prototype[entries] = number
-        grid.following[entries] = grid.head[flat]
-        grid.head[flat] = entries
-        entries += 1
-        axis = rank - 1
-        while axis >= 0 and shift[axis] == last[axis]:
-            shift[axis] = first[axis]
-            axis -= 1
-        if axis < 0:
-            return entries
-        shift[axis] += 1
-
-
-@njit(cache=True)
-def find_near(grid, points, y, found, offset, squared):
-    """All images within the search radius of the wrapped y.
-
-    Writes the numbers of the points into ``found``, ``L (y - y_image)`` into the rows of
-    ``offset`` and squared distances into ``squared``. Returns how many, and the least squared
-    distance (infinity if there is none). Without cells the nearest image of every point counts.
+    The steps that reach a convex neighbourhood leave no gaps in a run.
     """
-    rank = y.size
-    limit = grid.search_radius * grid.search_radius
-    if grid.head.size == 0:
-        return scan_all(grid, points, y, limit, found, offset, squared)
-    count = 0
-    least = np.inf
-    z = np.empty(rank)
-    for i in range(rank):
-        z[i] = 0.0
-        for j in range(i, rank):
-            z[i] += grid.isometry[i, j] * y[j]
-    base = cell_of(grid, y)
-    for o in range(grid.offsets.size):
-        entry = grid.head[base + grid.offsets[o]]
-        while entry >= 0:
-            total = 0.0
-            for i in range(rank):
-                step = z[i] - grid.position[entry, i]
-                offset[count, i] = step
-                total += step * step
-            if total <= limit:
-                found[count] = grid.prototype[entry]
-                squared[count] = total
-                least = min(least, total)
-                count += 1
-            entry = grid.following[entry]
-    return count, least
-
-
-@njit(cache=True)
-def scan_all(grid, points, y, limit, found, offset, squared):
-    """As ``find_near``, but looks at every point: one image each, differences wrapped by component.
-
-    Finds those with squared distance up to ``limit``; the least squared distance is that of all.
-    """
-    rank = y.size
-    count = 0
-    least = np.inf
-    difference = np.empty(rank)
-    for number in range(points):
-        for axis in range(rank):
-            turn = y[axis] - grid.point[number, axis]
-            difference[axis] = turn - 2 * np.pi * np.floor(turn / (2 * np.pi) + 0.5)
-        total = 0.0
-        for i in range(rank):
-            step = 0.0
-            for j in range(i, rank):
-                step += grid.isometry[i, j] * difference[j]
-            offset[count, i] = step
-            total += step * step
-        least = min(least, total)
-        if total <= limit:
-            found[count] = number
-            squared[count] = total
-            count += 1
-    return count, least
+    _, run = np.unique(steps[:, :-1], axis=0, return_inverse=True)
+    order = np.lexsort((steps[:, -1], run.ravel()))
+    lengths = np.bincount(run.ravel())
+    first = steps[order][np.concatenate([[0], np.cumsum(lengths)[:-1]])]
+    return first, lengths.astype(np.int64)

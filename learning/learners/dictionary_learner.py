@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.base import BaseEstimator, RegressorMixin, clone
 
-from learning.learners.sample_checks import checked_configurations, checked_samples, fitted
+from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.sample_dictionary import SampleDictionary
 from learning.symmetry_use import GroupArrays
-from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -73,8 +72,8 @@ class DictionaryLearner(RegressorMixin, BaseEstimator):
     def partial_fit(self, X: Any, y: Any, sample_weight: Any = None) -> DictionaryLearner:
         """Learn further samples in their order; arguments as in ``fit``."""
         first = not hasattr(self, "n_outputs_")
-        if first and self.replay < 0:
-            raise InputError("DictionaryLearner", "replay", self.replay, "at least 0")
+        if first:
+            require(self, "replay", self.replay >= 0, "at least 0")
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=first)
         if first:
             self.regressor_ = clone(self.regressor)

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import BaseEstimator, RegressorMixin
+from sklearn.base import RegressorMixin
 
-from learning.learners.cell_grid import enter, make_cell_grid, sees_several_images, with_room
-from learning.learners.local_linear_kernels import (
-    Rule,
-    make_scratch,
-    predict_batch,
-    slope_batch,
-    train,
-)
-from learning.learners.sample_checks import checked_configurations, checked_samples, fitted
-from learning.symmetry_use import GroupArrays, SavedGroup, SymmetryCoordinates
+from learning.learners.cell_grid import make_cell_grid, sees_several_images, with_room
+from learning.learners.cell_search import enter
+from learning.learners.local_linear_kernels import Rule, make_scratch, predict_batch, slope_batch
+from learning.learners.local_linear_update import train
+from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
+from learning.learners.saved_learner import SavedLearner
+from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
@@ -26,14 +24,13 @@ Array = NDArray[np.float64]
 FIRST_ROOM = 64
 
 
-class LocalLinearMap(RegressorMixin, BaseEstimator):
+class LocalLinearMap(RegressorMixin, SavedLearner):
     """Blend of local linear functions around prototypes that appear where samples do (Eq. 17-22).
 
     Parameters
     ----------
     radius : float
-        d: a sample at least this far from all prototypes becomes one [rad]; unit of the local
-        coordinates (Eq. 17).
+        d: a sample this far from all prototypes becomes one [rad]; unit of Eq. 17.
     kernel_width : float
         kappa: responsibilities are ``exp(-(r / (kappa d))^2)``. 1 is the paper's Eq. 18; 1.5 to 2
         lowers the best reachable error from some 10 mNm to 0.1 mNm and wants replay.
@@ -56,23 +53,12 @@ class LocalLinearMap(RegressorMixin, BaseEstimator):
         Relations to exploit: every sample is learned with all its symmetric copies, and distances
         are those the group leaves invariant.
     cutoff : float
-        Responsibilities are taken as zero beyond this many kernel widths. The estimate changes
-        by some ``exp(-cutoff^2)`` of the torque; 6 is the printed formula to double precision.
+        Responsibilities are zero beyond this many kernel widths, which changes the estimate by
+        some ``exp(-cutoff^2)``; 6 is the printed formula to double precision.
     looped : bool
         Do inner iterations one by one (the closed form gives the same).
     random_state : int
         Seed of the choice of samples to be replayed.
-
-    Attributes
-    ----------
-    n_prototypes_ : int
-        Number of local linear functions M.
-    prototypes_ : (M, r) array
-        Coordinates y = B q of the prototypes [rad] (q itself without a group).
-    offsets_, slopes_ : (M, n) and (M, n, r) arrays
-        o [N m] and W [N m per unit of the local coordinates].
-    n_samples_seen_ : int
-        Samples learned, copies and replays not counted.
 
     Notes
     -----
@@ -167,16 +153,12 @@ class LocalLinearMap(RegressorMixin, BaseEstimator):
         if first:
             self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
         draws = self._random.random((len(q), 1 + self.replay if self.replay else 0))
-        done = 0
-        while True:
-            done += train(
-                self._grid, self._counts, self._parameters, self._symmetries,
-                q[done:], torque[done:], weights[done:],
-                self._memory_q, self._memory_torque, self._stored, draws[done:],
-                self._scratch, self._rule,
-            )  # fmt: skip
-            if done == len(q):
-                break
+        progress = np.zeros(3, dtype=np.int64)
+        while not train(
+            self._grid, self._counts, self._parameters, self._symmetries, q, torque, weights,
+            self._memory_q, self._memory_torque, self._stored, draws, self._scratch, self._rule,
+            progress,
+        ):  # fmt: skip
             self._make_room(2 * len(self._parameters))
         self.n_samples_seen_ += len(q)
         return self
@@ -205,28 +187,26 @@ class LocalLinearMap(RegressorMixin, BaseEstimator):
 
     @property
     def n_prototypes_(self) -> int:
-        """Number of local linear functions."""
+        """Number of local linear functions M."""
         fitted(self)
         return int(self._counts[0])
 
     @property
     def prototypes_(self) -> Array:
-        """Coordinates of the prototypes [rad], shape (M, r)."""
+        """Coordinates y = B q of the prototypes (q without a group) [rad], shape (M, r)."""
         return self._grid.point[: self.n_prototypes_].copy()
 
     @property
     def offsets_(self) -> Array:
         """Offsets o [N m], shape (M, n)."""
-        return self._parameters[: self.n_prototypes_, :, 0].copy()
+        return self._parameters[: int(self._counts[0]), :, 0].copy()
 
     @property
     def slopes_(self) -> Array:
         """Slopes W [N m per local unit], shape (M, n, r)."""
-        return self._parameters[: self.n_prototypes_, :, 1:].copy()
+        return self._parameters[: int(self._counts[0]), :, 1:].copy()
 
-    def to_arrays(self) -> dict[str, NDArray]:
-        """Everything learned, as arrays; with ``parameters()`` all that a saved model needs."""
-        fitted(self)
+    def _arrays(self) -> dict[str, NDArray]:
         stored = int(self._stored[0])
         return {
             "prototypes": self.prototypes_,
@@ -234,69 +214,41 @@ class LocalLinearMap(RegressorMixin, BaseEstimator):
             "slopes": self.slopes_,
             "memory_q": self._memory_q[:stored].copy(),
             "memory_torque": self._memory_torque[:stored].copy(),
-            **({} if self.group is None else self._coordinates.to_arrays()),
         }
 
-    def parameters(self) -> dict[str, Any]:
-        """Settings and counters as plain numbers (JSON), without the group."""
-        fitted(self)
-        settings = {k: v for k, v in self.get_params(deep=False).items() if k != "group"}
-        state = {
-            "joints": int(self.n_features_in_),
-            "outputs": int(self.n_outputs_),
-            "flat": bool(self._flat),
-            "samples_seen": int(self.n_samples_seen_),
+    def _counters(self) -> dict[str, Any]:
+        return {
             "offered_to_memory": int(self._stored[1]),
             "generator": self._random.bit_generator.state,
         }
-        return {"settings": settings, "state": state}
 
-    @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray], parameters: dict[str, Any]) -> LocalLinearMap:
-        """The learner that was saved, ready to go on learning where it stopped."""
-        group = SavedGroup.from_arrays(arrays) if "group_basis" in arrays else None
-        learner = cls(**parameters["settings"], group=group)
-        state = parameters["state"]
-        learner._check_parameters()
-        learner.n_features_in_ = state["joints"]
-        learner._start(state["joints"], state["outputs"], state["flat"])
-        points = np.asarray(arrays["prototypes"], dtype=float)
-        learner._make_room(max(FIRST_ROOM, 2 * len(points)))
-        learner._parameters[: len(points), :, 0] = arrays["offsets"]
-        learner._parameters[: len(points), :, 1:] = arrays["slopes"]
-        learner._enter(points)
+    def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
+        points = arrays["prototypes"]
+        self._make_room(max(FIRST_ROOM, 2 * len(points)))
+        self._parameters[: len(points), :, 0] = arrays["offsets"]
+        self._parameters[: len(points), :, 1:] = arrays["slopes"]
+        for number, point in enumerate(points):
+            self._counts[1] = enter(self._grid, self._counts[1], number, point)
+        self._counts[0] = len(points)
         stored = len(arrays["memory_q"])
-        learner._memory_q[:stored] = arrays["memory_q"]
-        learner._memory_torque[:stored] = arrays["memory_torque"]
-        learner._stored[:] = stored, state["offered_to_memory"]
-        learner.n_samples_seen_ = state["samples_seen"]
-        learner._random.bit_generator.state = state["generator"]
-        return learner
+        self._memory_q[:stored] = arrays["memory_q"]
+        self._memory_torque[:stored] = arrays["memory_torque"]
+        self._stored[:] = stored, state["offered_to_memory"]
+        self._random.bit_generator.state = state["generator"]
 
     def _check_parameters(self) -> None:
         for name in ("radius", "kernel_width", "learning_rate", "cutoff"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise InputError("LocalLinearMap", name, value, "a number > 0")
-        if not 0 < self.relaxation < 2:
-            raise InputError("LocalLinearMap", "relaxation", self.relaxation, "0 < number < 2")
-        if self.inner_iterations is not None and self.inner_iterations < 1:
-            raise InputError(
-                "LocalLinearMap", "inner_iterations", self.inner_iterations, "None or at least 1"
-            )
-        if self.looped and self.inner_iterations is None:
-            raise InputError(
-                "LocalLinearMap", "inner_iterations", None, "a number of steps when looped"
-            )
-        if self.replay < 0 or self.memory < 1:
-            raise InputError(
-                "LocalLinearMap", "replay and memory", (self.replay, self.memory), ">= 0 and >= 1"
-            )
-        if self.cutoff * self.kernel_width < 2:
-            raise InputError(
-                "LocalLinearMap", "cutoff * kernel_width", self.cutoff * self.kernel_width,
-                "at least 2, so that neighbours up to 2 d away are seen (Eq. 22)",
-            )  # fmt: skip
+            require(self, name, 0 < getattr(self, name) < np.inf, "a number > 0")
+        steps, reach = self.inner_iterations, self.cutoff * self.kernel_width
+        require(self, "inner_iterations", steps is None or steps >= 1, "None or at least 1")
+        require(
+            self, "looped", not self.looped or steps is not None, "a number of inner iterations"
+        )
+        require(self, "relaxation", 0 < self.relaxation < 2, "0 < number < 2")
+        require(self, "replay", self.replay >= 0, "at least 0")
+        require(self, "memory", self.memory >= 1, "at least 1")
+        # Neighbours up to 2 d away must be seen (Eq. 22).
+        require(self, "cutoff", reach >= 2, f"at least {2 / self.kernel_width} here")
 
     def _start(self, joints: int, outputs: int, flat: bool) -> None:
         """Empty state for ``joints`` inputs and ``outputs`` outputs."""
@@ -311,8 +263,9 @@ class LocalLinearMap(RegressorMixin, BaseEstimator):
             symmetric.Y if outputs == joints else np.ones((1, outputs)),
         )
         kernel = self.kernel_width * self.radius
-        self._grid = make_cell_grid(symmetric.isometry, self.cutoff * kernel, 1.5 * self.radius)
+        self._grid = make_cell_grid(symmetric.isometry, self.cutoff * kernel, self.radius)
         self._rule = Rule(
+            (0.0,) * outputs,
             float(self.radius),
             float(kernel),
             float(self.learning_rate),
@@ -334,16 +287,8 @@ class LocalLinearMap(RegressorMixin, BaseEstimator):
         self.n_samples_seen_ = 0
 
     def _make_room(self, points: int) -> None:
-        points = max(points, 2 * self._coordinates.order * (1 + self.replay))
         grown = np.zeros((points, *self._parameters.shape[1:]))
         grown[: len(self._parameters)] = self._parameters
         self._parameters = grown
         self._grid = with_room(self._grid, points)
-        self._scratch = make_scratch(
-            len(self._grid.following), points, self._coordinates.rank, grown.shape[1]
-        )
-
-    def _enter(self, points: Array) -> None:
-        for point in points:
-            self._counts[1] = enter(self._grid, self._counts[1], self._counts[0], point)
-            self._counts[0] += 1
+        self._scratch = make_scratch(self._grid, grown.shape[1])

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import BaseEstimator, RegressorMixin
+from sklearn.base import RegressorMixin
 
-from learning.learners.cell_grid import enter, make_cell_grid, with_room
+from learning.learners.cell_grid import make_cell_grid, with_room
+from learning.learners.cell_search import enter
 from learning.learners.local_linear_kernels import make_scratch
-from learning.learners.sample_checks import checked_configurations, checked_samples, fitted
+from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.sample_dictionary import SampleDictionary
+from learning.learners.saved_learner import SavedLearner
 from learning.learners.square_root_filter import SquareRootFilter
 from learning.learners.tied_basis import copies_of, least_distance, tied_features_batch
-from learning.symmetry_use import GroupArrays, SavedGroup, SymmetryCoordinates
+from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
@@ -23,7 +26,7 @@ Array = NDArray[np.float64]
 FIRST_ROOM = 32
 
 
-class RecursiveLeastSquares(RegressorMixin, BaseEstimator):
+class RecursiveLeastSquares(RegressorMixin, SavedLearner):
     """All local linear functions fitted together, exactly equivariant, from few samples.
 
     Parameters
@@ -73,6 +76,9 @@ class RecursiveLeastSquares(RegressorMixin, BaseEstimator):
     >>> bool(np.abs(pendulum.predict(q) - 5.0 * np.cos(q)).max() < 1e-3)
     True
     """
+
+    _filters: list[SquareRootFilter]
+    _solution: list[Array] | None
 
     def __init__(
         self,
@@ -159,66 +165,31 @@ class RecursiveLeastSquares(RegressorMixin, BaseEstimator):
         """Coordinates of the prototypes [rad], shape (M, r)."""
         return self._grid.point[: self.n_prototypes_].copy()
 
-    def to_arrays(self) -> dict[str, NDArray]:
-        """Everything learned, as arrays; with ``parameters()`` all that a saved model needs."""
-        fitted(self)
+    def _arrays(self) -> dict[str, NDArray]:
         self._solve()
         arrays = {"prototypes": self.prototypes_, **self._dictionary.to_arrays()}
         for c, least_squares in enumerate(self._filters):
             arrays[f"factor_{c}"] = least_squares.factor
             arrays[f"right_{c}"] = least_squares.right
-        if self.group is not None:
-            arrays |= self._coordinates.to_arrays()
         return arrays
 
-    def parameters(self) -> dict[str, Any]:
-        """Settings and counters as plain numbers (JSON), without the group."""
-        fitted(self)
-        settings = {k: v for k, v in self.get_params(deep=False).items() if k != "group"}
-        state = {
-            "joints": int(self.n_features_in_),
-            "outputs": int(self.n_outputs_),
-            "flat": bool(self._flat),
-            "samples_seen": int(self.n_samples_seen_),
-        }
-        return {"settings": settings, "state": state}
-
-    @classmethod
-    def from_arrays(
-        cls, arrays: dict[str, NDArray], parameters: dict[str, Any]
-    ) -> RecursiveLeastSquares:
-        """The learner that was saved, ready to go on learning where it stopped."""
-        group = SavedGroup.from_arrays(arrays) if "group_basis" in arrays else None
-        learner = cls(**parameters["settings"], group=group)
-        state = parameters["state"]
-        learner._check_parameters()
-        learner.n_features_in_ = state["joints"]
-        learner._start(state["joints"], state["outputs"], state["flat"])
-        for point in np.asarray(arrays["prototypes"], dtype=float):
-            learner._add_prototype(point)
-        learner._dictionary.restore(arrays)
-        learner._filters = []
-        for c in range(len(learner._classes)):
-            least_squares = SquareRootFilter(0, 0, learner.ridge)
-            least_squares.factor = np.array(arrays[f"factor_{c}"], dtype=float)
-            least_squares.right = np.array(arrays[f"right_{c}"], dtype=float)
-            learner._filters.append(least_squares)
-        learner._stale = False
-        learner.n_samples_seen_ = state["samples_seen"]
-        return learner
+    def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
+        for point in arrays["prototypes"]:
+            self._add_prototype(point)
+        self._dictionary.restore(arrays)
+        self._filters = [SquareRootFilter(0, 0, self.ridge) for _ in self._classes]
+        for c, least_squares in enumerate(self._filters):
+            least_squares.factor = arrays[f"factor_{c}"]
+            least_squares.right = arrays[f"right_{c}"]
+        self._stale = False
 
     def _check_parameters(self) -> None:
         for name in ("radius", "kernel_width", "ridge", "cutoff"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise InputError("RecursiveLeastSquares", name, value, "a number > 0")
-        if self.memory < 1:
-            raise InputError("RecursiveLeastSquares", "memory", self.memory, "at least 1")
-        if self.cutoff * self.kernel_width < 1:
-            raise InputError(
-                "RecursiveLeastSquares", "cutoff * kernel_width",
-                self.cutoff * self.kernel_width, "at least 1, so that neighbours are seen",
-            )  # fmt: skip
+            require(self, name, 0 < getattr(self, name) < np.inf, "a number > 0")
+        require(self, "memory", self.memory >= 1, "at least 1")
+        # Neighbours up to d away must be seen.
+        reach = self.cutoff * self.kernel_width
+        require(self, "cutoff", reach >= 1, f"at least {1 / self.kernel_width} here")
 
     def _start(self, joints: int, outputs: int, flat: bool) -> None:
         """Empty state for ``joints`` inputs and ``outputs`` outputs."""
@@ -239,8 +210,8 @@ class RecursiveLeastSquares(RegressorMixin, BaseEstimator):
         self._counts = np.zeros(2, dtype=np.int64)
         self._make_room(FIRST_ROOM)
         self._dictionary = SampleDictionary(self.memory, self.group)
-        self._filters: list[SquareRootFilter] = []
-        self._solution: list[Array] | None = None
+        self._filters = []
+        self._solution = None
         self._stale = True
         self._flat = flat
         self.n_outputs_ = outputs
@@ -248,9 +219,7 @@ class RecursiveLeastSquares(RegressorMixin, BaseEstimator):
 
     def _make_room(self, points: int) -> None:
         self._grid = with_room(self._grid, points)
-        self._work = make_scratch(
-            len(self._grid.following), points, self._coordinates.rank, self._signs.shape[0]
-        )
+        self._work = make_scratch(self._grid, self._signs.shape[0])
 
     def _offer_prototype(self, q: Array) -> bool:
         """Make q a prototype if no prototype's orbit is near; whether it became one."""

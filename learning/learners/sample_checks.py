@@ -92,6 +92,12 @@ def fitted(learner: Any) -> None:
         check_is_fitted(learner, "n_outputs_")
 
 
+def require(learner: Any, name: str, holds: bool, accepted: str) -> None:
+    """Refuse the setting ``name`` of a learner unless ``holds``."""
+    if not holds:
+        raise InputError(type(learner).__name__, name, getattr(learner, name), accepted)
+
+
 def _refuse_non_finite(where: str, field: str, values: Array) -> None:
     if not np.isfinite(values).all():
         at = tuple(int(i) for i in np.argwhere(~np.isfinite(values))[0])

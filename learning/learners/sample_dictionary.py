@@ -163,7 +163,7 @@ def _slot_for(points, size, budget, images, isometry, distance):
 
 @njit(cache=True)
 def _note(nearest, distance, p, other, squared):
-    """Point ``other`` lies at this squared distance from p: is it among the two nearest?"""
+    """Point ``other`` lies at this squared distance from p: keep it if among the two nearest."""
     if squared < distance[p, 0]:
         distance[p, 1], nearest[p, 1] = distance[p, 0], nearest[p, 0]
         distance[p, 0], nearest[p, 0] = squared, other

@@ -59,7 +59,7 @@ class SquareRootFilter:
         stacked[:features, :features] = np.sqrt(ridge) * np.eye(features)
         stacked[features:, :features] = phi
         stacked[features:, features:] = targets
-        upper = np.linalg.qr(stacked, mode="r")
+        upper: Array = np.asarray(np.linalg.qr(stacked, mode="r"))
         result = cls(features, outputs, ridge)
         result.factor = np.ascontiguousarray(upper[:features, :features])
         result.right = np.ascontiguousarray(upper[:features, features:])

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from learning.learners.cell_grid import find_near, scan_all
+from learning.learners.cell_search import find_far, find_near
 
 
 @njit(cache=True)
@@ -36,19 +36,30 @@ def copies_of(symmetries, q, images):
 
 
 @njit(cache=True)
+def near_or_far(grid, counts, y, work, far):
+    """What ``find_near`` finds at y, or ``find_far`` if so told."""
+    if far:
+        return find_far(grid, counts[0], y, work.found, work.offset, work.squared)
+    return find_near(grid, y, work.found, work.offset, work.squared)
+
+
+@njit(cache=True)
 def least_distance(grid, counts, images, work):
-    """Squared distance from an orbit (G, r) to the nearest prototype; infinity if none is near."""
+    """Squared distance from an orbit (G, r) to the nearest prototype."""
     least = np.inf
-    for g in range(images.shape[0]):
-        least = min(
-            least, find_near(grid, counts[0], images[g], work.found, work.offset, work.squared)[1]
-        )
+    for far in (False, True):
+        for g in range(images.shape[0]):
+            least = min(least, near_or_far(grid, counts, images[g], work, far)[1])
+        if least < np.inf:
+            break
     return least
 
 
 @njit(cache=True)
 def tied_features(grid, counts, images, signs, radius, kernel, work, features):
     """Features of one configuration, given its copies ``images`` (G, r).
+
+    Out of reach of all kernels the nearest prototypes answer.
 
     Parameters
     ----------
@@ -66,34 +77,15 @@ def tied_features(grid, counts, images, signs, radius, kernel, work, features):
         Result; per prototype the offset first.
     """
     rank = images.shape[1]
+    scale = -1.0 / (kernel * kernel)
     features[:] = 0.0
     total = 0.0
-    scale = -1.0 / (kernel * kernel)
     reference = 0.0
-    near = False
-    for attempt in range(2):
-        limit = -1.0
-        if attempt == 1:
-            # Nothing within reach of any kernel: the nearest prototypes answer alone.
-            reference = np.inf
-            for g in range(images.shape[0]):
-                reference = min(
-                    reference,
-                    scan_all(
-                        grid, counts[0], images[g], -1.0, work.found, work.offset, work.squared
-                    )[1],
-                )
-            limit = reference + grid.search_radius * grid.search_radius
+    for far in (False, True):
+        if far:
+            reference = least_distance(grid, counts, images, work)
         for g in range(images.shape[0]):
-            if attempt == 0:
-                found, _ = find_near(
-                    grid, counts[0], images[g], work.found, work.offset, work.squared
-                )
-            else:
-                found, _ = scan_all(
-                    grid, counts[0], images[g], limit, work.found, work.offset, work.squared
-                )
-            near = near or found > 0
+            found, _ = near_or_far(grid, counts, images[g], work, far)
             for e in range(found):
                 weight = np.exp((work.squared[e] - reference) * scale)
                 total += weight
@@ -103,10 +95,9 @@ def tied_features(grid, counts, images, signs, radius, kernel, work, features):
                     features[c, column] += signed
                     for k in range(rank):
                         features[c, column + 1 + k] += signed * work.offset[e, k] / radius
-        if near:
+        if total > 0.0:
             break
-    if total > 0.0:
-        features /= total
+    features /= total
 
 
 @njit(cache=True)
