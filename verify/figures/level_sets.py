@@ -29,6 +29,9 @@ from verify.figures.style import (
 
 Array = NDArray[np.float64]
 
+FINE = 0.01
+"""Longest stroke of a curve [rad]."""
+
 PANEL_POINTS, LABEL_DISTANCE = 215.0, 9.5
 """Width of a panel of stick figures and distance of a number from its tip, in printer's points."""
 
@@ -149,7 +152,7 @@ def level_set_map(
     ----------
     curves
         Component-wise level sets (Eq. 6 and 7): component (0 or 1), sign (+1 or -1), and points
-        (p, 2) [rad] in order along the curve; NaN rows and jumps of more than pi break it.
+        (p, 2) [rad] in order along the curve, drawn modulo 2 pi; NaN rows break it.
     q
         Symmetric configurations (m, 2) [rad], drawn modulo 2 pi.
     sets, labels, stable
@@ -198,7 +201,16 @@ def level_set_map(
 
 def _broken(path: Array) -> Array:
     """Wrap a curve into one turn and break it where it jumps across the edge."""
-    wrapped = (path + np.pi) % (2 * np.pi) - np.pi
+    if len(path) < 2:
+        return path
+    gaps = np.diff(path, axis=0)
+    length = np.nan_to_num(np.abs(gaps).max(axis=1))
+    pieces = np.maximum(np.ceil(length / FINE).astype(int), 1)
+    start = np.repeat(np.arange(len(gaps)), pieces)
+    step = np.arange(len(start)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    dense = path[start] + (step / pieces[start])[:, None] * gaps[start]
+    dense = np.concatenate([dense, path[-1:]])
+    wrapped = (dense + np.pi) % (2 * np.pi) - np.pi
     jump = np.any(np.abs(np.diff(wrapped, axis=0)) > np.pi, axis=1)
     return np.insert(wrapped, np.flatnonzero(jump) + 1, np.nan, axis=0)
 

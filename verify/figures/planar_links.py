@@ -40,7 +40,8 @@ def planar_links(model: pin.Model, q: ArrayLike) -> Array | None:
         return None
     up /= np.linalg.norm(up)
     data = model.createData()
-    axes = pin.computeJointJacobians(model, data, points[0])[3:].T
+    jacobians = pin.computeJointJacobians(model, data, points[0])  # flat for a single joint
+    axes = jacobians.reshape(6, -1)[3:].T
     axis = axes[0]
     if np.any(np.abs(axes @ axis) < 1 - 1e-9) or abs(axis @ up) > 1e-9:
         return None

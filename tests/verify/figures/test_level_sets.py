@@ -80,6 +80,16 @@ def test_the_map_draws_configurations_modulo_turns_and_breaks_curves(configurati
     ]
 
 
+def test_a_straight_curve_of_two_points_is_drawn_whole():
+    line = np.array([[-np.pi, 2.0], [2.0, -np.pi]])
+    figure = level_set_map([(1, 1, line)], np.zeros((0, 2)), np.zeros(0, dtype=int))
+    drawn = figure.axes[0].lines[0].get_xydata()
+    drawn = drawn[~np.isnan(drawn).any(axis=1)]
+    assert np.allclose(np.cos(drawn.sum(axis=1)), np.cos(2 - np.pi))
+    covered = np.unique(np.floor(drawn[:, 0] / 0.05))
+    assert len(covered) >= 0.98 * (2.0 + np.pi) / 0.05
+
+
 def test_the_map_is_for_two_joints():
     with pytest.raises(InputError, match="shape of q"):
         level_set_map([], np.zeros((4, 3)), np.zeros(4))
