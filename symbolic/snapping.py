@@ -173,10 +173,7 @@ def snap_rotation(rotation: Array) -> tuple[Array, Triple, Triple]:
     after = snap_angles(before)
     if before == after:
         return rotation, before, after
-    snapped = rotation_from_rpy(after)
-    if differs(before, after) or np.abs(snapped - rotation).max() <= ROUNDING:
-        return snapped, before, after
-    return rotation, before, before  # close to pitch = +-pi/2 the angles are too vague for that
+    return rotation_from_rpy(after), before, after
 
 
 def differs(before: Triple, after: Triple) -> bool:

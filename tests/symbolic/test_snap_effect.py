@@ -71,6 +71,17 @@ def test_the_bound_by_coefficients_is_that_of_the_exact_potentials(urdf, seed):
     )
 
 
+def test_what_is_left_out_of_the_coefficients_is_in_the_bound(monkeypatch):
+    """With a coarse threshold the coefficients alone would promise too much."""
+    first = ArmBody.from_model(load_robot("panda").model, "panda")
+    rng = np.random.default_rng(0)
+    second = disturbed(first, rng, 0.3)
+    q = rng.uniform(-np.pi, np.pi, (300, 7))
+    seen = np.abs(gravity(first, q) - gravity(second, q)).max(axis=0)
+    monkeypatch.setattr("symbolic.snap_effect._NEGLIGIBLE", 0.9)
+    assert np.all(seen <= _by_coefficients(first.tree(), second.tree()))
+
+
 def test_an_arm_does_not_differ_from_itself():
     body = ArmBody.from_model(load_robot("panda").model, "panda")
     assert not np.any(torque_difference_bound(body.tree(), body.tree()))

@@ -123,6 +123,24 @@ def test_a_bend_and_its_opposite_leave_no_noise():
     assert snaps == ()
 
 
+def test_lengths_beyond_a_bend_and_its_opposite_leave_no_noise():
+    urdf = arm(0.3, 0.4, -0.7)
+    straight = tuple(
+        replace(joint, xyz=(0.1, 0.0, 0.0)) if joint.name == "second" else joint
+        for joint in urdf.joints
+    )
+    tool = UrdfLink("tool", 1.0, (0.2, 0.0, 0.0))
+    carried = UrdfJoint("tool_mount", "fixed", "bend2", "tool", xyz=(0.1, 0.0, 0.0))
+    urdf = replace(urdf, links=(*urdf.links, tool), joints=(*straight, carried))
+    raw = body_from_urdf(urdf, ("first", "second"))
+    assert raw.translations[1, 1] != 0  # the noise is there to be removed
+    assert raw.levers[0, 1] != 0
+    body, snaps = snap_urdf(urdf, ("first", "second"))
+    assert snaps == ()
+    np.testing.assert_array_equal(body.translations[1, 1:], [0.0, 0.0])
+    np.testing.assert_array_equal(body.levers[0, 1:], [0.0, 0.0])
+
+
 def test_an_axis_is_snapped_and_listed_with_its_effect():
     body, snaps = snap_urdf(arm(axis=(5e-6, 1.0, 0.0)), ("first", "second"))
     np.testing.assert_array_equal(body.axes[1], [0.0, 1.0, 0.0])

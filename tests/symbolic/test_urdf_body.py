@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 from hypothesis import given
+from hypothesis import strategies as st
 
 from symbolic.arm_body import ArmBody
 from symbolic.urdf import Urdf, urdf_text
 from symbolic.urdf_body import body_from_urdf
 from symbolic.urdf_elements import UrdfJoint, UrdfLink
-from tests.symbolic.urdf_strategies import right_angles, urdfs
+from tests.symbolic.urdf_strategies import lengths, right_angles, urdfs
 
 FIELDS = (
     "rotations",
@@ -73,3 +74,14 @@ def test_a_tool_beyond_the_last_joint_is_carried_by_it():
     body = body_from_urdf(Urdf("arm", "base", links, joints), ("joint",))
     assert body.masses.tolist() == [2.0]
     assert body.levers.tolist() == [[0.5, 0.1, 0.0]]
+
+
+@given(st.floats(0.1, 10.0), st.tuples(lengths, lengths, lengths))
+def test_the_only_mass_of_a_body_keeps_its_centre_to_the_last_bit(mass, centre):
+    links = (UrdfLink("base"), UrdfLink("arm", mass, centre), UrdfLink("frame"))
+    joints = (
+        UrdfJoint("joint", "continuous", "base", "arm"),
+        UrdfJoint("mount", "fixed", "arm", "frame"),
+    )
+    body = body_from_urdf(Urdf("arm", "base", links, joints), ("joint",))
+    assert body.levers[0].tolist() == list(centre)
