@@ -203,6 +203,7 @@ class FundamentalDomain:
         relation, turns = self._relations(folded.element, folded.turns)
         shape = points.shape[:-1]
         step = folded.points @ self._action.scale.T - y
+        step[(relation == 0) & ~turns.any(axis=1)] = 0.0  # already there: exactly
         return FoldedConfigurations(
             (points.reshape(-1, self.group.n) + step @ self._lift.T).reshape(points.shape),
             relation.reshape(shape),

@@ -246,7 +246,7 @@ class Support:
         target = (s[rows, None] * self.K[rows] * Y) @ inverse[:, :r]
         if not r:
             return np.zeros((0, 0))
-        return np.linalg.solve(self.coordinates[rows].astype(float), target).round(9) + 0.0
+        return _cleaned(np.linalg.solve(self.coordinates[rows].astype(float), target))
 
     def lift(self, A_sat: Array, d_sat: Array) -> tuple[Array, Array]:
         """Return (A, d) in q: the map of y = B q, and identity on the completing coordinates."""
@@ -257,7 +257,7 @@ class Support:
         inverse = np.round(np.linalg.inv(V))
         A = inverse @ block @ V
         d = inverse[:, :r] @ d_sat
-        return A.round(9) + 0.0, wrap(d)
+        return _cleaned(A), wrap(d)
 
     def relation(
         self,
@@ -272,3 +272,9 @@ class Support:
         n = self.K.shape[1]
         bound = np.zeros(n) if exact else residual_bound(potential, A, d, Y)
         return SymmetryRelation(A, d, Y, self.B, exact, bound)
+
+
+def _cleaned(matrix: Array) -> Array:
+    """Return a matrix with whole numbers for entries that only rounding keeps from them."""
+    whole = np.round(matrix)
+    return np.where(np.abs(matrix - whole) < 1e-9, whole, matrix) + 0.0

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
@@ -25,6 +25,7 @@ def configurations(seed, m, n):
     return np.random.default_rng(seed).uniform(-9, 9, (m, n))
 
 
+@settings(max_examples=60)
 @given(potentials(), seeds)
 def test_exactly_one_member_of_each_orbit_lies_in_the_domain(potential, seed):
     group = primary_symmetries(potential)
@@ -33,6 +34,7 @@ def test_exactly_one_member_of_each_orbit_lies_in_the_domain(potential, seed):
     assert domain.contains(orbits).sum(axis=0).tolist() == [1] * 10
 
 
+@settings(max_examples=60)
 @given(potentials(), seeds)
 def test_representatives_are_reached_by_the_relation_returned(potential, seed):
     group = primary_symmetries(potential)
@@ -52,6 +54,7 @@ def test_representatives_are_reached_by_the_relation_returned(potential, seed):
     np.testing.assert_allclose(q0 @ kept.T, q @ kept.T, atol=1e-12)
 
 
+@settings(max_examples=60)
 @given(potentials(), seeds)
 def test_representatives_are_the_same_for_the_whole_orbit(potential, seed):
     group = primary_symmetries(potential)
@@ -120,6 +123,7 @@ def test_default_2r_domain_is_the_papers():
     np.testing.assert_allclose(domain.center, [np.pi / 4, np.pi / 4])
 
 
+@settings(max_examples=30)
 @given(seeds)
 def test_domain_near_home_contains_home(seed):
     home = configurations(seed, 1, 3)[0]
@@ -159,6 +163,12 @@ def test_relations_of_fractional_matrices():
     assert ConvexHull(domain.vertices).volume == pytest.approx(TURN**3 / group.order)
     q = configurations(7, 50, 3)
     assert domain.contains(group.orbit(q)).sum(axis=0).tolist() == [1] * 50
+    q0, relations = domain.canonicalise(q)
+    np.testing.assert_array_equal(domain.canonicalise(q0)[0], q0)
+    images = domain.canonicalise(group.orbit(q))[0]
+    np.testing.assert_allclose(images, np.broadcast_to(q0, images.shape), atol=1e-11)
+    signs = np.array([relation.Y for relation in relations])
+    np.testing.assert_allclose(FRACTIONAL.gradient(q0), signs * FRACTIONAL.gradient(q), atol=1e-12)
 
 
 def test_free_directions_are_left_alone():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symbolic.dirichlet_cell import dirichlet_cell
@@ -37,6 +37,7 @@ def boundary_points(cell, rng, m):
     return np.array(points)
 
 
+@settings(max_examples=60)
 @given(potentials(), st.integers(0, 2**32 - 1))
 def test_boundary_points_have_one_representative_which_is_its_own(potential, seed):
     group = primary_symmetries(potential)
@@ -68,6 +69,7 @@ def test_grids_through_fixed_points_have_one_representative_per_orbit(potential)
     assert len(np.unique(np.rint(folded.points * 4 / np.pi), axis=0)) == len(orbits)
 
 
+@settings(max_examples=30)
 @given(st.integers(0, 2**32 - 1))
 def test_learned_offsets_that_fit_only_nearly_still_fold(seed):
     rng = np.random.default_rng(seed)

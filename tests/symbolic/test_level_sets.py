@@ -133,6 +133,7 @@ def test_sixteen_configurations_in_two_primary_sets_of_eight():
     assert [len(found.primary_set(i).stable_members) for i in (0, 1)] == [2, 2]
 
 
+@settings(max_examples=40)
 @given(angles, angles)
 def test_equation_11_map_by_map(q1, q2):
     potential = two_r()

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from symbolic.polytope import distinct, nearer_to_origin
 
 
+@settings(max_examples=25)
 @given(st.integers(1, 4), st.integers(0, 2**32 - 1))
 def test_facets_are_the_half_spaces_that_cut(r, seed):
     rng = np.random.default_rng(seed)
