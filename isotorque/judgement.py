@@ -26,6 +26,7 @@ from verify.run_summary import (
     summarise_static_torques,
 )
 from verify.targets import TargetSet
+from verify.verdict import Verdict
 
 Array = NDArray[np.float64]
 
@@ -50,7 +51,7 @@ def judge_run(run: RunOutcome) -> RunReport:
     RunReport
     """
     symmetry = _symmetry(run)
-    verdicts = ()
+    verdicts: tuple[Verdict, ...] = ()
     if symmetry is not None and run.options.symmetries == "learned":
         verdicts = (completeness(symmetry),)
     return RunReport(

@@ -56,7 +56,7 @@ class ConstrainedDirectionSampling(Exploration):
         rng: np.random.Generator,
         *,
         static_torques: StaticTorques,
-        domain: Domain,
+        domain: Domain | None,
         torque_range: Any,
         home_torque: Any = None,
         settings: ExplorationSettings | None = None,

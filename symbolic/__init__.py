@@ -1,1 +1,1 @@
-"""What physics says, exactly: robots, gravity, relations and groups, symmetries, BCTS, level sets."""
+"""What physics says, exactly: robots, gravity, relations, symmetries, BCTS, level sets."""
