@@ -7,7 +7,8 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from learning.dynamics.chain import Chain
-from learning.dynamics.compiled_equations import WORKSPACE_COLUMNS, evaluate
+from learning.dynamics.compiled_equations import evaluate
+from learning.dynamics.compiled_links import new_rows
 
 Array = NDArray[np.float64]
 
@@ -32,7 +33,7 @@ class CompiledEquations:
         self.chain = Chain.from_model(model)
         n = self.chain.n
         self._at_rest = np.zeros(n)
-        self._sweep = np.zeros((n + 1, WORKSPACE_COLUMNS))
+        self._rows = new_rows(self.chain)
         self._mass = np.zeros((n, n))
         self._stiffness = np.zeros((n, n))
         self._bias = np.zeros(n)
@@ -66,7 +67,7 @@ class CompiledEquations:
             *self.chain.arrays,
             np.array(q, dtype=float),
             np.array(v, dtype=float),
-            self._sweep,
+            self._rows,
             self._mass,
             self._bias,
             self._stiffness,

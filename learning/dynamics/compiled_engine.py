@@ -62,7 +62,7 @@ class CompiledEngine:
         )
         self._never = self._rest._replace(velocity=-1.0)
         self._time_limit = rule.time_limit
-        self._scratch = new_scratch(self.equations.n)
+        self._scratch = new_scratch(self.equations.chain)
 
     def settle(self, q: Array, v: Array, torque: Array) -> Motion:
         """Move under a constant torque (n,) until the arm settles, hits a limit or time is up."""

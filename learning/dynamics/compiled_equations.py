@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from learning.dynamics.chain import ARMATURE
 from learning.dynamics.compiled_links import (
-    LINK_ROW,
     F,
     H,
     M,
@@ -15,12 +14,9 @@ from learning.dynamics.compiled_links import (
     force_link,
     move_link,
     place_link,
-    set_base,
     weigh_link,
 )
 from learning.dynamics.kernel import kernel, kernel_part
-
-WORKSPACE_COLUMNS = LINK_ROW
 
 
 @kernel
@@ -33,8 +29,8 @@ def evaluate(parents, kinds, links, gravity, q, v, rows, mass, bias, stiffness):
         The arrays of a `Chain`.
     q, v : (n,) arrays
         Joint angles [rad] and velocities [rad/s].
-    rows : (n + 1, WORKSPACE_COLUMNS) array
-        Workspace.
+    rows : (n + 1, LINK_ROW) array
+        Workspace from `learning.dynamics.compiled_links.new_rows`.
     mass, stiffness : (n, n) arrays
         Outputs: mass matrix [kg m^2] and ``dg/dq`` [N m/rad]. Only entries on and below the
         diagonal of joints on one branch are written; the others must be zero beforehand.
@@ -52,7 +48,6 @@ def evaluate(parents, kinds, links, gravity, q, v, rows, mass, bias, stiffness):
     derivative of the first moment of all that joint i carries.
     """
     n = q.shape[0]
-    set_base(rows[0], gravity)
     for i in range(n):
         row = rows[i + 1]
         up = rows[parents[i]]
@@ -63,10 +58,11 @@ def evaluate(parents, kinds, links, gravity, q, v, rows, mass, bias, stiffness):
     for i in range(n - 1, -1, -1):
         _joint_terms(parents, rows, i, gravity, mass, bias, stiffness)
         mass[i, i] += links[i, ARMATURE]
-        row = rows[i + 1]
-        up = rows[parents[i]]
-        for c in range(M, N + 3):
-            up[c] += row[c]
+        if parents[i] > 0:
+            row = rows[i + 1]
+            up = rows[parents[i]]
+            for c in range(M, N + 3):
+                up[c] += row[c]
 
 
 @kernel_part

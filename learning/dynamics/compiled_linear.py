@@ -57,6 +57,62 @@ def solve(a, pivots, x):
 
 
 @kernel
+def solve_step(mass, stiffness, damping, h, hh, factor, pivots, x):
+    """Solve ``(M + h D + hh K) y = x`` in one go; no friction but the viscous.
+
+    Parameters
+    ----------
+    mass, stiffness : (n, n) arrays
+        M and K, lower triangles.
+    damping : (n,) array
+        The diagonal of D.
+    h, hh : float
+        Factors of D and K.
+    factor : (n, n) array
+        Workspace.
+    pivots : (n,) array
+        Workspace.
+    x : (n,) array
+        Right side in, solution out.
+
+    Returns
+    -------
+    bool
+        Whether the matrix is positive definite; if not, x is spoilt.
+
+    Notes
+    -----
+    `factorise` and `solve` with the assembly of the matrix and the first substitution drawn into
+    the elimination: half of the time for two joints, where loops cost more than sums.
+    """
+    n = x.shape[0]
+    for i in range(n):
+        d = mass[i, i] + hh * stiffness[i, i] + h * damping[i]
+        y = x[i]
+        for j in range(i):
+            s = mass[i, j] + hh * stiffness[i, j]
+            for k in range(j):
+                s -= factor[i, k] * factor[j, k]
+            factor[i, j] = s
+        for k in range(i):
+            s = factor[i, k]
+            l = s * pivots[k]
+            d -= s * l
+            y -= l * x[k]
+            factor[i, k] = l
+        if not d > 0.0:
+            return False
+        pivots[i] = 1.0 / d
+        x[i] = y
+    for i in range(n - 1, -1, -1):
+        y = x[i] * pivots[i]
+        for k in range(i + 1, n):
+            y -= factor[k, i] * x[k]
+        x[i] = y
+    return True
+
+
+@kernel
 def multiply(a, x, out):
     """Write ``a x`` to out (n,) for a symmetric matrix of which the lower triangle is given."""
     n = a.shape[0]

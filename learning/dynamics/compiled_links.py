@@ -8,7 +8,18 @@ from __future__ import annotations
 
 import math
 
-from learning.dynamics.chain import LEVER, MASS, MOMENTS, PRISMATIC, ROTATION, TRANSLATION
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.dynamics.chain import (
+    LEVER,
+    MASS,
+    MOMENTS,
+    PRISMATIC,
+    ROTATION,
+    TRANSLATION,
+    Chain,
+)
 from learning.dynamics.kernel import kernel_part
 
 # Columns of a link's row.
@@ -27,17 +38,15 @@ N = 46  # 3: moment that moves the link
 LINK_ROW = 49
 
 
-@kernel_part
-def set_base(row, gravity):
-    """Fill in the row of the base: gravity enters as an acceleration upwards."""
-    for c in range(LINK_ROW):
-        row[c] = 0.0
-    row[E] = 1.0
-    row[E + 4] = 1.0
-    row[E + 8] = 1.0
-    row[A] = -gravity[0]
-    row[A + 1] = -gravity[1]
-    row[A + 2] = -gravity[2]
+def new_rows(chain: Chain) -> NDArray[np.float64]:
+    """Create the rows (n + 1, LINK_ROW) of a chain; that of the base is filled in for good.
+
+    Gravity enters as an acceleration of the base upwards.
+    """
+    rows = np.zeros((chain.n + 1, LINK_ROW))
+    rows[0, E : E + 9] = np.eye(3).ravel()
+    rows[0, A : A + 3] = -chain.gravity
+    return rows
 
 
 @kernel_part

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from learning.dynamics.equations import Array
 
@@ -41,34 +42,69 @@ def first_crossing(
     >>> print(round(fraction, 6), where)
     0.5 [0.5]
     """
-    low, high = limits[:, 0], limits[:, 1]
-    outside = (q_next < low) | (q_next > high)
-    suspects = np.flatnonzero(outside | (v * v_next < 0.0))
-    if len(suspects) == 0:
+    first = None
+    rows = zip(
+        limits.tolist(), q.tolist(), v.tolist(), q_next.tolist(), v_next.tolist(), strict=True
+    )
+    for (low, high), q0, v0, q1, v1 in rows:
+        motion = Cubic(q0, h * v0, q1, h * v1)
+        end = 1.0
+        if low <= q1 <= high:
+            # A joint that turns round gets less than this beyond both ends of the step.
+            reach = h * max(abs(v0), abs(v1))
+            inside = low <= min(q0, q1) - reach and max(q0, q1) + reach <= high
+            if v0 * v1 >= 0.0 or inside:
+                continue
+            end = motion.turns_at()
+        beyond = motion.at(end)
+        if not low <= beyond <= high:
+            met = motion.meets(high if beyond > high else low, end)
+            first = met if first is None else min(first, met)
+    if first is None:
         return None
-    motions = CubicHermiteSpline([0.0, 1.0], [q, q_next], [h * v, h * v_next])
-    fractions = []
-    for j in suspects:
-        joint = CubicHermiteSpline([0.0, 1.0], [q[j], q_next[j]], [h * v[j], h * v_next[j]])
-        turns = [1.0] if outside[j] else joint.derivative().roots(extrapolate=False)
-        ends = [s for s in turns if not low[j] <= joint(s) <= high[j]]
-        if ends:
-            limit = high[j] if joint(ends[0]) > high[j] else low[j]
-            fractions.append(_meets(joint, limit, ends[0]))
-    if not fractions:
-        return None
-    first = min(fractions)
-    return first, np.clip(motions(first), low, high)
+    where = Cubic(q, h * v, q_next, h * v_next).at(first)
+    return first, np.clip(where, limits[:, 0], limits[:, 1])
 
 
-def _meets(joint: CubicHermiteSpline, limit: float, end: float) -> float:
-    """Return when a joint that is beyond a limit at ``end`` first gets there, by bisection."""
-    inside, beyond = 0.0, end
-    side = joint(end) > limit
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (inside + beyond)
-        if (joint(middle) > limit) == side:
-            beyond = middle
-        else:
-            inside = middle
-    return beyond
+class Cubic(NamedTuple):
+    """The cubic with given values q0, q1 and slopes v0, v1 at 0 and 1."""
+
+    q0: Any
+    v0: Any
+    q1: Any
+    v1: Any
+
+    def at(self, s: float) -> Any:
+        """Return its value at s."""
+        r = 1.0 - s
+        begin = self.q0 * (1.0 + 2.0 * s) + self.v0 * s
+        return r * r * begin + s * s * (self.q1 * (3.0 - 2.0 * s) - self.v1 * r)
+
+    def slope(self, s: float) -> Any:
+        """Return its derivative at s."""
+        r = 1.0 - s
+        ends = self.v0 * r * (1.0 - 3.0 * s) + self.v1 * s * (3.0 * s - 2.0)
+        return 6.0 * s * r * (self.q1 - self.q0) + ends
+
+    def turns_at(self) -> float:
+        """Return where the slope vanishes, if v0 and v1 have opposite signs."""
+        before, after = 0.0, 1.0
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (before + after)
+            if self.slope(middle) * self.v0 > 0.0:
+                before = middle
+            else:
+                after = middle
+        return after
+
+    def meets(self, limit: float, end: float) -> float:
+        """Return where it first meets a limit that it is beyond at ``end``, but not at 0."""
+        side = self.at(end) > limit
+        before, after = 0.0, end
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (before + after)
+            if (self.at(middle) > limit) == side:
+                after = middle
+            else:
+                before = middle
+        return after

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dposv
@@ -21,8 +21,7 @@ def largest(x: Array) -> float:
     return max(map(abs, x.tolist()))
 
 
-@dataclass(frozen=True, eq=False)
-class Step:
+class Step(NamedTuple):
     """A step that was tried.
 
     Attributes
@@ -109,7 +108,10 @@ class Stepper:
         self, mass: Array, stiffness: Array, momentum: Array, drive: Array, h: float, guess: Array
     ) -> Array | None:
         """Solve for the next velocity with stiffness; None if that system is not definite."""
-        system = mass + h * (self._damping + h * stiffness)
+        system = stiffness * h
+        system += self._damping
+        system *= h
+        system += mass
         _, x, failed = dposv(system, momentum + h * drive)
         if failed:
             return None

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.dynamics.chain import Chain
-from learning.dynamics.compiled_equations import WORKSPACE_COLUMNS
+from learning.dynamics.compiled_links import new_rows
 from learning.dynamics.engine import Body
 
 RESTED = 0
@@ -85,7 +85,7 @@ class Scratch(NamedTuple):
 
     Attributes
     ----------
-    sweep : (n + 1, WORKSPACE_COLUMNS) array
+    rows : (n + 1, LINK_ROW) array
         Workspace of the equations of motion.
     mass, stiffness : (n, n) arrays
         At the beginning of a step.
@@ -97,7 +97,7 @@ class Scratch(NamedTuple):
         Further vectors, one per row.
     """
 
-    sweep: NDArray[np.float64]
+    rows: NDArray[np.float64]
     mass: NDArray[np.float64]
     stiffness: NDArray[np.float64]
     mass_half: NDArray[np.float64]
@@ -123,10 +123,11 @@ def new_plant(chain: Chain, body: Body) -> Plant:
     )
 
 
-def new_scratch(n: int) -> Scratch:
-    """Create the workspace for an arm of n joints."""
+def new_scratch(chain: Chain) -> Scratch:
+    """Create the workspace for a chain."""
+    n = chain.n
     return Scratch(
-        sweep=np.zeros((n + 1, WORKSPACE_COLUMNS)),
+        rows=new_rows(chain),
         mass=np.zeros((n, n)),
         stiffness=np.zeros((n, n)),
         mass_half=np.zeros((n, n)),
