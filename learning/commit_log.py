@@ -26,7 +26,7 @@ class CommitLog:
         The file, which exists.
     sync_seconds
         A commit waits for the disk when the last one that did was this long ago [s]; 0 makes
-        every commit wait, infinity none.
+        every commit wait, infinity only the first.
     clock
         Gives the time [s]; anything that only grows.
 

@@ -57,11 +57,13 @@ def read_csv(path: str | Path, joint_names: Sequence[str]) -> StaticSamples:
     Examples
     --------
     >>> import tempfile
-    >>> path = Path(tempfile.mkdtemp()) / "arm.csv"
+    >>> directory = tempfile.TemporaryDirectory()
+    >>> path = Path(directory.name) / "arm.csv"
     >>> _ = path.write_text("elbow.q,shoulder.q,shoulder.tau,elbow.tau\n0,-1.5,0.25,-0.5\n")
     >>> samples = read_csv(path, ["shoulder", "elbow"])
     >>> samples.q, samples.tau
     (array([[-1.5,  0. ]]), array([[ 0.25, -0.5 ]]))
+    >>> directory.cleanup()
     """
     n = len(joint_names)
     rows: list[list[float]] = []

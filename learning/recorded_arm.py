@@ -86,7 +86,8 @@ class RecordedArm:
     ...         print("moves")
     ...         self.q = torque / 8.0
     ...         return Settled(self.q, torque, 1.5)
-    >>> path = Path(tempfile.mkdtemp()) / "run.sqlite"
+    >>> directory = tempfile.TemporaryDirectory()
+    >>> path = Path(directory.name) / "run.sqlite"
     >>> info = RunInfo("spring", "c0ffee", ("hinge",))
     >>> with Recording.create(path, info) as recording:
     ...     print(RecordedArm(Spring(), recording).apply([2.0]).q)
@@ -95,6 +96,7 @@ class RecordedArm:
     >>> with Recording.open(path, info) as recording:
     ...     print(RecordedArm(Spring(), recording).apply([2.0]).q)
     [0.25]
+    >>> directory.cleanup()
     """
 
     def __init__(
@@ -164,19 +166,16 @@ class RecordedArm:
         if row is not None:
             motion = self._recording.motion(row[0])
             if motion is None or motion[:2] != (float(step_seconds), sent):
+                self._stopped = True
                 raise self._other_run("the torques or step of a profile", "those recorded")
             return playback_of(outcome_in(row), motion)
         played: Playback = self._begin("play")(profile.copy(), step_seconds)
         outcome = self._observed(played.outcome)
-        motion = (float(step_seconds), sent, None, None, None)
+        seen: Row = (None, None, None)
         if self._trajectories:
-            observed = to_bytes(played.torques)
-            motion = (
-                *motion[:2],
-                to_bytes(played.times),
-                to_bytes(played.q),
-                None if observed == sent else observed,
-            )
+            felt = to_bytes(played.torques)
+            seen = (to_bytes(played.times), to_bytes(played.q), None if felt == sent else felt)
+        motion = (float(step_seconds), sent, *seen)
         self._record(CommandKind.PLAY, last, outcome, motion)
         return playback_of(outcome, motion)
 
@@ -201,16 +200,17 @@ class RecordedArm:
         if self._stopped:
             wanted = "no interruption; open the recording again to resume"
             raise RecordingError(self._recording.path, "last command", "interrupted", wanted)
+        self._stopped = True  # stays so if ctrl-C or a contradiction comes in between
         row = next(self._rows, None)
-        if row is None:
-            if not self._live:
-                self._go_live()
-            return None
-        asked = (self.phase, self.label, kind.value, sent)
-        if row[1:5] != asked:
-            raise self._other_run(_spoken(*asked), _spoken(*row[1:5]))
-        self.position += 1
-        self._q = q_after(row)
+        if row is not None:
+            asked = (self.phase, self.label, kind.value, sent)
+            if row[1:5] != asked:
+                raise self._other_run(_spoken(*asked), _spoken(*row[1:5]))
+            self.position += 1
+            self._q = q_after(row)
+        elif not self._live:
+            self._go_live()
+        self._stopped = False
         return row
 
     def _go_live(self) -> None:
@@ -244,17 +244,8 @@ class RecordedArm:
         result: bytes | None = None,
     ) -> None:
         q = self._observed_q()
-        self._recording.append(
-            self.phase,
-            kind,
-            sent,
-            outcome,
-            q,
-            label=self.label,
-            result=result,
-            motion=motion,
-            state=self._state(),
-        )
+        extras = {"label": self.label, "result": result, "motion": motion, "state": self._state()}
+        self._recording.append(self.phase, kind, sent, outcome, q, **extras)
         self._q = q
         self.position += 1
         self._stopped = False
@@ -289,7 +280,6 @@ class RecordedArm:
         return outcome_of(OutcomeKind(outcome.kind), q, torque, float(outcome.seconds))
 
     def _other_run(self, asked: str, recorded: str) -> RecordingError:
-        self._stopped = True
         where = f"{self._recording.path}, command {self.position + 1}"
         accepted = f"{recorded}; the recording was made with other options or another version"
         return RecordingError(where, "what the run asks for", asked, accepted)

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from learning.arm import LimitHit, Outcome, OutcomeKind, Settled, TimedOut, Vector
-from learning.recording_schema import checksum
+from learning.recording_schema import checksum, command_id
 
 FLOATS = np.dtype("<f8")
 
 Row = tuple[Any, ...]
-"""Columns of the table ``command``, in order, without ``part`` and ``checksum``."""
+"""Columns of the table ``command``, in order, from ``number`` to ``result``."""
 
 
 class CommandKind(StrEnum):
@@ -131,7 +131,7 @@ def row_of(
     q_after: Vector,
     result: bytes | None = None,
 ) -> Row:
-    """Make a row of the table ``command``, with part and checksum.
+    """Make a row of the table ``command``, from ``id`` to ``checksum``.
 
     What repeats is left out: the observed torque where it is the commanded one, the
     configuration afterwards where it is the outcome's.
@@ -149,5 +149,6 @@ def row_of(
             after = None
     # Plain text, as the file will give it back: an enumeration's spelling is another one.
     names = (str(phase), None if label is None else int(label), kind.value)
-    row = (part, number, *names, argument, how, seconds, q, torque, after, result)
+    key = (command_id(part, number), part, number)
+    row = (*key, *names, argument, how, seconds, q, torque, after, result)
     return (*row, checksum(*row))

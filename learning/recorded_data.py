@@ -50,7 +50,7 @@ def record_samples(recording: Recording, samples: StaticSamples, phase: str = "l
         rows.append(row_of(part, number, phase, None, CommandKind.DATA, to_bytes(tau), outcome, q))
     if recording.length == 0:
         recording.append_rows(rows)
-    elif list(recording.rows()) != [row[1:-1] for row in rows]:
+    elif list(recording.rows()) != [row[2:-1] for row in rows]:
         found = f"recorded with {recording.length - 1} other commands or samples"
         raise RecordingError(
             recording.path, f"part {recording.info.part!r}", found, "the same data"

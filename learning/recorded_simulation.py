@@ -30,11 +30,13 @@ class RecordedSimulation(RecordedArm):
     >>> arm = SimulatedArm(robot, physics="guided")
     >>> options = {"arm": arm.settings.as_json()}
     >>> info = RunInfo(robot.name, robot.digest, robot.joint_names, arm.physics, options=options)
-    >>> with Recording.create(Path(tempfile.mkdtemp()) / "run.sqlite", info) as recording:
+    >>> directory = tempfile.TemporaryDirectory()
+    >>> with Recording.create(Path(directory.name) / "run.sqlite", info) as recording:
     ...     recorded = RecordedSimulation(arm, recording)
     ...     recorded.place([0.0, 0.0])
     ...     print(recorded.hold().torque.round(3))
     [24.525  6.131]
+    >>> directory.cleanup()
     """
 
     def place(self, q: ArrayLike) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -26,7 +25,15 @@ from learning.recording_queries import (
     read_state,
 )
 from learning.recording_reader import RecordingReader
-from learning.recording_schema import CHECKPOINT, COMMAND, MOTION, SESSION, STATE, checked
+from learning.recording_schema import (
+    CHECKPOINT,
+    COMMAND,
+    MOTION,
+    SESSION,
+    STATE,
+    checked,
+    command_id,
+)
 from learning.run_info import RunInfo, canonical_json, software_versions
 
 REPLAY_CHUNK = 4096
@@ -55,13 +62,15 @@ class Recording:
     Examples
     --------
     >>> import tempfile
-    >>> path = Path(tempfile.mkdtemp()) / "run.sqlite"
+    >>> directory = tempfile.TemporaryDirectory()
+    >>> path = Path(directory.name) / "run.sqlite"
     >>> info = RunInfo("2r", "1f0c", ("shoulder", "elbow"), seed=7)
     >>> with Recording.create(path, info) as recording:
     ...     recording.save_checkpoint("learner", {"weights": [0.5, 1.5]})
     >>> with Recording.open(path, info) as recording:
     ...     recording.load_checkpoint("learner").arrays["weights"]
     array([0.5, 1.5])
+    >>> directory.cleanup()
     """
 
     def __init__(self, log: CommitLog, lock: WriterLock, part: RecordedPart) -> None:
@@ -160,12 +169,7 @@ class Recording:
     def __enter__(self) -> Recording:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -191,11 +195,10 @@ class Recording:
 
     def rows(self, start: int = 0) -> Iterator[Row]:
         """Yield the rows of this part from number ``start`` on, in order."""
-        condition = f"part = ? and number between ? and ? + {REPLAY_CHUNK - 1}"
         for first in range(start, self.length, REPLAY_CHUNK):
             with clear_errors(self.path):
-                values = (self._part, first, first)
-                rows = list(read_rows(self._log.connection, condition, values))
+                values = (command_id(self._part, k) for k in (first, first + REPLAY_CHUNK - 1))
+                rows = list(read_rows(self._log.connection, "id between ? and ?", tuple(values)))
             yield from rows
 
     def motion(self, number: int) -> Row | None:
@@ -279,11 +282,7 @@ class Recording:
         """
         number = max(self.length - 1, 0) if number is None else number
         values = (self._part, name, number, pack_arrays(arrays))
-        known = self._log.connection.execute(
-            "select number from checkpoint where part = ? and name = ?", values[:2]
-        ).fetchone()
-        if known is None or known[0] <= number:
-            self._log.commit([checked(CHECKPOINT, values)])
+        self._log.commit([checked(CHECKPOINT, values)])
 
     def load_checkpoint(self, name: str) -> Checkpoint | None:
         """Latest checkpoint of that name in this part, or None."""

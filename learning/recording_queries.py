@@ -11,6 +11,7 @@ from typing import Any
 from learning.arm import Outcome, Playback
 from learning.recorded_checkpoint import Checkpoint, unpack_arrays
 from learning.recorded_command import Row, outcome_in, to_array
+from learning.recording_schema import command_id
 from learning.run_info import RunInfo
 
 
@@ -73,8 +74,10 @@ def read_rows(
         SQL after ``where``, and the values of its question marks.
     """
     columns = "number, phase, label, kind, argument, outcome, seconds, q, torque, q_after, result"
-    query = f"select {columns} from command where {condition} order by part, number"
-    yield from connection.execute(query, values)
+    query = f"select {columns} from command where {condition} order by id"
+    # Not `yield from`: it would close the cursor, which an already closed file does not allow.
+    for row in connection.execute(query, values):  # noqa: UP028
+        yield row
 
 
 def read_motion(connection: sqlite3.Connection, part: int, number: int) -> Row | None:
@@ -90,7 +93,7 @@ def read_motion(connection: sqlite3.Connection, part: int, number: int) -> Row |
 def read_playback(connection: sqlite3.Connection, part: int, number: int) -> Playback | None:
     """Read the trajectory of a profile, empty if it was not kept; None if there was no profile."""
     motion = read_motion(connection, part, number)
-    rows = list(read_rows(connection, "part = ? and number = ?", (part, number)))
+    rows = list(read_rows(connection, "id = ?", (command_id(part, number),)))
     if motion is None or not rows:
         return None
     return playback_of(outcome_in(rows[0]), motion)

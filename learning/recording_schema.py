@@ -15,7 +15,7 @@ APPLICATION_ID = 0x49534F54
 SCHEMA_VERSION = 1
 """Counts up when tables change; a file of a newer version is refused."""
 
-PAGE_BYTES = 2048
+PAGE_BYTES = 1024
 """A commit writes at least the page it changed, so small pages make small commits."""
 
 # All arrays are blobs of float64, little endian, row by row. A checksum covers the other columns of
@@ -34,11 +34,11 @@ create table session (
     versions text not null
 );
 create table command (
-    part integer not null, number integer not null, phase text not null, label integer,
-    kind text not null, argument blob not null, outcome text, seconds, q blob, torque blob,
-    q_after blob, result blob, checksum integer not null,
-    primary key (part, number)
-) without rowid;
+    id integer primary key, part integer not null, number integer not null,
+    phase text not null, label integer, kind text not null, argument blob not null,
+    outcome text, seconds, q blob, torque blob, q_after blob, result blob,
+    checksum integer not null
+);
 create table motion (
     part integer not null, number integer not null, step_seconds, commanded blob not null,
     times blob, q blob, torques blob, checksum integer not null,
@@ -55,13 +55,24 @@ create table checkpoint (
 );
 """
 
-COMMAND = "insert into command values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
+COMMAND = "insert into command values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"
 MOTION = "insert into motion values (?, ?, ?, ?, ?, ?, ?, ?)"
 STATE = "insert or replace into arm_state values (?, ?, ?, ?)"
-CHECKPOINT = "insert or replace into checkpoint values (?, ?, ?, ?, ?)"
+# A replay takes its checkpoints again: they must not replace later ones, nor write for nothing.
+CHECKPOINT = """
+insert into checkpoint values (?, ?, ?, ?, ?)
+on conflict (part, name) do update
+set number = excluded.number, arrays = excluded.arrays, checksum = excluded.checksum
+where excluded.number >= number and excluded.checksum != checksum
+"""
 ROBOT = "insert into robot values (?, ?, ?, ?)"
 PART = "insert or replace into part values (?, ?, ?, ?, ?, ?, ?, ?, ?)"
 SESSION = "insert into session values (?, ?, ?, ?)"
+
+
+def command_id(part: int, number: int) -> int:
+    """Key of the table ``command``: appending to an integer key writes the fewest pages."""
+    return part * 2**40 + number
 
 
 def checksum(*values: Any) -> int:

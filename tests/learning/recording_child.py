@@ -1,6 +1,8 @@
 """A run in a process of its own, to be killed: records ToyArm, then writes what it saw.
 
-python -m tests.learning.recording_child RUN.sqlite RESULT STEPS
+Tells on standard output how far it has come.
+
+    python -m tests.learning.recording_child RUN.sqlite RESULT STEPS
 """
 
 import hashlib
@@ -20,9 +22,10 @@ def main(path: Path, result: Path, steps: int) -> None:
     seen = hashlib.sha256()
     with Recording.open_or_create(path, info) as recording:
         arm = RecordedArm(ToyArm(), recording)
-        print("running", flush=True)
         for number, step in enumerate(explore(arm, commands, seed=7)):
             seen.update(step)
+            if number % 25 == 0:
+                print(number, flush=True)
             if number % 50 == 0:
                 arm.save_checkpoint("digest", {"digest": seen.hexdigest()})
         arm.finish()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -96,6 +96,7 @@ def test_commands_and_trajectories_come_back(tmp_path):
                 reader.playback(number)
 
 
+@settings(max_examples=25)
 @given(arrays(np.float64, (12, 2), elements=st.sampled_from([-1.5, 1.5, -0.25, 0.25, 0.0, -0.0])))
 def test_groups_share_their_absolute_torque(tmp_path_factory, torques):
     path = tmp_path_factory.mktemp("run") / "run.sqlite"
@@ -181,6 +182,16 @@ def test_checkpoints_are_read_by_name_and_part(tmp_path):
         assert checkpoint.number == 0
         assert reader.checkpoint("net", part="run").arrays["w"].tolist() == [1, 2]
         assert reader.checkpoint("other") is None
+
+
+def test_a_reader_may_be_closed_in_the_middle_of_reading(tmp_path):
+    path = tmp_path / "run.sqlite"
+    with Recording.create(path, INFO) as recording:
+        list(explore(RecordedArm(ToyArm(), recording), ["apply"] * 5, 1))
+    with RecordingReader(path) as reader:
+        commands = reader.commands()
+        next(commands)
+    commands.close()  # quietly, like any generator
 
 
 def test_paths_with_special_characters(tmp_path):

@@ -108,7 +108,7 @@ def test_not_a_recording(tmp_path, content):
     path = tmp_path / "run.sqlite"
     path.write_bytes(content)
     refused(path, INFO, "an Isotorque recording|damaged")
-    with pytest.raises(RecordingError, match="an Isotorque recording|damaged"):
+    with pytest.raises(RecordingError, match=r"an Isotorque recording|damaged"):
         RecordingReader(path)
     assert path.read_bytes() == content
 
@@ -128,7 +128,7 @@ def test_missing_files_and_directories(tmp_path):
         with pytest.raises(RecordingError, match="file is missing"):
             RecordingReader(path)
     for make in (Recording.open, Recording.create):
-        with pytest.raises(RecordingError, match="directory .* is not usable"):
+        with pytest.raises(RecordingError, match=r"directory .* is not usable"):
             make(tmp_path / "none" / "run.sqlite", INFO)
     assert list(tmp_path.iterdir()) == []
 
@@ -170,12 +170,16 @@ def test_damage_is_refused_or_harmless(tmp_path_factory, intact, where, bit, how
         content[at] ^= 1 << bit
     path = tmp_path_factory.mktemp("damaged") / "run.sqlite"
     path.write_bytes(content)
+    refusal = None
     try:
         with Recording.open(path, INFO) as recording:
             list(recording.rows())
-        assert tables(path) == tables(intact)  # the damage was in unused space
     except RecordingError as error:
-        assert "\n" not in str(error)
+        refusal = str(error)
+    if refusal is None:
+        assert tables(path) == tables(intact)  # the damage was in unused space
+    else:
+        assert "\n" not in refusal
         assert path.read_bytes() == content
 
 

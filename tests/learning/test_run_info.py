@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from learning.run_info import RunInfo, generator_state, software_versions
@@ -20,6 +20,7 @@ PLAIN = st.recursive(
 )
 
 
+@settings(max_examples=50)
 @given(st.dictionaries(st.text(), PLAIN))
 def test_options_survive_json_and_equal_themselves(options):
     info = RunInfo("r", "d", ("a",), options=options)
