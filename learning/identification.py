@@ -10,16 +10,11 @@ from learning.errors_in_variables import MeasurementNoise, Undetermined
 from learning.group_fit import GroupFit, torque_uncertainty
 from learning.group_search import candidate_relations, largest_consistent_group
 from learning.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
-from learning.potential_fit import (
-    FittedPotential,
-    all_frequencies,
-    fit_potential,
-    present_frequencies,
-)
+from learning.lifting import lifted_relations
+from learning.potential_fit import FittedPotential, present_frequencies
 from learning.samples import static_samples
-from learning.silent_joints import silent_dependence
-from symbolic.integer_lattice import saturation
-from symbolic.relations import SymmetryGroup, SymmetryRelation, identity
+from learning.silent_joints import fit_on_active_joints
+from symbolic.relations import SymmetryGroup, identity
 
 Array = NDArray[np.float64]
 
@@ -32,7 +27,6 @@ SCREEN = 1e-9
 LARGEST_ERROR = 0.05
 """Relations are claimed if the data exclude larger RMS torque errors, relative to RMS torque."""
 BOUND_DEVIATIONS = 3.0
-ZERO_TORQUE = 1e-9
 
 
 def identify(
@@ -86,24 +80,15 @@ def identify(
     """
     configurations, torques = static_samples(q, tau)
     n = configurations.shape[1]
-    level = ZERO_TORQUE * float(np.abs(torques).max(initial=0.0))
-    level = max(level, 5.0 * noise.torque if noise else 0.0)
-    active: NDArray[np.bool_] = np.abs(torques).max(axis=0, initial=0.0) > level
-    if not active.any():
-        return _nothing(n, "samples with a torque: all given torques are zero")
     try:
-        while True:
-            fit = fit_potential(configurations, torques, all_frequencies(n, active), noise)
-            involved, unmoved = silent_dependence(
-                configurations, torques, fit, active, LARGEST_ERROR, noise
-            )
-            if not involved:
-                break
-            active[involved] = True
-        best = _best_group(fit)
+        fit, unmoved = fit_on_active_joints(configurations, torques, noise, LARGEST_ERROR)
     except Undetermined as lacking:
         return _nothing(n, str(lacking))
-    return _claimed(fit, best, unmoved)
+    best = _best_group(fit)
+    if best is None:
+        missing = "more samples: no coefficient of the fitted potential stands out of the noise"
+        return _nothing(n, missing, fit)
+    return claim(fit, best, unmoved)
 
 
 def _nothing(n: int, missing: str, fit: FittedPotential | None = None) -> LearnedSymmetries:
@@ -113,7 +98,7 @@ def _nothing(n: int, missing: str, fit: FittedPotential | None = None) -> Learne
     return LearnedSymmetries(SymmetryGroup([unit]), (relation,), missing, "identification", fit)
 
 
-def _best_group(fit: FittedPotential) -> GroupFit:
+def _best_group(fit: FittedPotential) -> GroupFit | None:
     """Largest consistent group over several ideas of which frequencies are present."""
     deviations = float(
         stats.norm.isf(SCREEN) if np.isinf(fit.freedom) else stats.t.isf(SCREEN, fit.freedom)
@@ -131,24 +116,20 @@ def _best_group(fit: FittedPotential) -> GroupFit:
             continue
         if best is None or len(found.group) > len(best.group):
             best = found
-    if best is None:
-        raise Undetermined(_more_samples(fit, np.inf))
     return best
 
 
-def _more_samples(fit: FittedPotential, excess: float) -> str:
-    """Say how many more samples the noise calls for; errors shrink with the root of the number."""
-    if np.isinf(excess):
-        return "more samples: no coefficient of the fitted potential stands out of the noise"
-    more = int(np.ceil(fit.samples * (excess**2 - 1.0)))
-    return (
-        f"about {max(1, more)} more samples: relations could still be wrong by "
-        f"{100.0 * LARGEST_ERROR * excess:.0f} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
-        "are allowed"
-    )
+def claim(fit: FittedPotential, best: GroupFit, unmoved: list[int]) -> LearnedSymmetries:
+    """State a group that the data agree with, or say how much data would be needed to claim it.
 
-
-def _claimed(fit: FittedPotential, best: GroupFit, unmoved: list[int]) -> LearnedSymmetries:
+    Parameters
+    ----------
+    fit : FittedPotential
+    best : GroupFit
+        Of the same fit.
+    unmoved : list of int
+        Joints that never moved.
+    """
     bound, rms = torque_uncertainty(fit, best.group, BOUND_DEVIATIONS)
     n = bound.shape[1]
     size = fit.rms_torque()
@@ -156,24 +137,20 @@ def _claimed(fit: FittedPotential, best: GroupFit, unmoved: list[int]) -> Learne
     excess = float((rms / np.where(size > 0.0, size, np.inf))[:, involved].max(initial=0.0))
     excess /= LARGEST_ERROR
     if excess > 1.0:
-        return _nothing(n, _more_samples(fit, excess), fit)
-    group = best.group
-    _, completion = saturation(group.basis)
-    inverse = np.round(np.linalg.inv(completion.astype(float)))
-    rank = len(group.basis)
-    relations = []
-    for i in range(len(group)):
-        block = np.eye(n)
-        block[:rank, :rank] = group.A[i]
-        A = np.round(inverse @ block @ completion)
-        d = inverse[:, :rank] @ group.d[i]
-        relations.append(SymmetryRelation(A, d, group.Y[i], group.basis, False, bound[i]))
+        more = int(np.ceil(fit.samples * (excess**2 - 1.0)))
+        missing = (
+            f"about {max(1, more)} more samples: relations could still be wrong by "
+            f"{100.0 * LARGEST_ERROR * excess:.2g} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
+            "are allowed"
+        )
+        return _nothing(n, missing, fit)
+    relations = lifted_relations(best.group, bound)
     learned = tuple(
         LearnedRelation(r, Knowledge.IDENTIFIED, 0, error, best.p_value)
         for r, error in zip(relations, best.offset_errors, strict=True)
     )
-    missing = None
+    unknown = None
     if unmoved:
         names = ", ".join(str(joint + 1) for joint in unmoved)
-        missing = f"samples in which joint {names} moves: the relations hold at its one angle"
-    return LearnedSymmetries(SymmetryGroup(relations), learned, missing, "identification", fit)
+        unknown = f"samples in which joint {names} moves: the relations hold at its one angle"
+    return LearnedSymmetries(SymmetryGroup(relations), learned, unknown, "identification", fit)

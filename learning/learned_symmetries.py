@@ -136,6 +136,8 @@ class LearnedSymmetries:
         The potential fitted to the samples, with its covariance.
     rejected : tuple of RejectedPairs
         Secondary pairs, by torque signs.
+    contradicted : tuple of LearnedRelation
+        Relations that pairs seem to show and the fitted potential excludes.
     """
 
     group: SymmetryGroup
@@ -144,6 +146,7 @@ class LearnedSymmetries:
     method: str
     fit: FittedPotential | None = None
     rejected: tuple[RejectedPairs, ...] = field(default=())
+    contradicted: tuple[LearnedRelation, ...] = field(default=())
 
     @property
     def order(self) -> int:

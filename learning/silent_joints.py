@@ -9,6 +9,7 @@ from learning.errors_in_variables import MeasurementNoise, Undetermined
 from learning.potential_fit import (
     FittedPotential,
     Frequencies,
+    all_frequencies,
     fit_potential,
     present_frequencies,
 )
@@ -18,6 +19,51 @@ Array = NDArray[np.float64]
 
 NEVER_MOVED = 1e-6
 LEVEL = 1e-4
+ZERO_TORQUE = 1e-9
+
+
+def active_joints(tau: Array, noise: MeasurementNoise | None) -> NDArray[np.bool_]:
+    """Which joints ever needed a torque, shape (n,), from torques (N, n) [N m]."""
+    magnitude = np.abs(tau)
+    level = ZERO_TORQUE * float(magnitude.max(initial=0.0))
+    level = max(level, 5.0 * noise.torque if noise else 0.0)
+    active: NDArray[np.bool_] = magnitude.max(axis=0, initial=0.0) > level
+    return active
+
+
+def fit_on_active_joints(
+    q: Array, tau: Array, noise: MeasurementNoise | None, largest_error: float
+) -> tuple[FittedPotential, list[int]]:
+    """Fit a potential of the joints that matter.
+
+    Parameters
+    ----------
+    q, tau : (N, n) arrays
+        Samples [rad], [N m].
+    noise : MeasurementNoise, optional
+    largest_error : float
+        See `depends_on_joint`.
+
+    Returns
+    -------
+    fit : FittedPotential
+    unmoved : list of int
+        Joints without torque that never moved, so that nothing is known about them.
+
+    Raises
+    ------
+    Undetermined
+        If the samples do not determine the potential, or not whether a joint matters.
+    """
+    active = active_joints(tau, noise)
+    if not active.any():
+        raise Undetermined("samples with a torque: all given torques are zero")
+    while True:
+        fit = fit_potential(q, tau, all_frequencies(q.shape[1], active), noise)
+        involved, unmoved = silent_dependence(q, tau, fit, active, largest_error, noise)
+        if not involved:
+            return fit, unmoved
+        active[involved] = True
 
 
 def depends_on_joint(

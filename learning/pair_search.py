@@ -1,0 +1,192 @@
+"""Search for relations among pairs of configurations that the same |torque| holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.errors_in_variables import MeasurementNoise, Undetermined
+from learning.false_alarms import AcceptedRelation, accepted_relations
+from learning.group_fit import SAME_OFFSET, CandidateGroup
+from learning.identification import LARGEST_ERROR
+from learning.pair_evidence import supports
+from learning.relation_group import Refinement, completed, find_orbits, refine_offsets
+from learning.row_votes import Tolerance, voted_relations
+from learning.silent_joints import active_joints, fit_on_active_joints, never_moved
+from learning.torque_pairs import Pairs, TorqueGroups, group_by_torque, pairs_by_signs
+from symbolic.relations import wrap
+
+Array = NDArray[np.float64]
+
+LEAST_TORQUES = 3
+SMALLEST_SHARE = 0.02
+SAME_TORQUE = 1e-6
+SIGMAS = (1e-8, 1e-6, 3e-5, 5e-4, 2e-3, 6e-3, 1.5e-2)
+"""Noise levels of an angle that are tried where none is given [rad]."""
+PRODUCTS_SEEN = 0.4
+"""Mean support of all relations of a group, relative to that of the last one added."""
+UNMISTAKABLE = 1e-5
+"""Below this noise [rad] pairs do not obey a relation by chance: no larger noise is tried."""
+ROUNDING = 1e-9
+"""Angles are never taken to be better known than this [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairSearch:
+    """What pairing finds in a recording.
+
+    Attributes
+    ----------
+    active : (n,) array of bool
+        Joints that need torque; everything below is in their coordinates.
+    groups : TorqueGroups
+    kinds : list of Pairs
+        All pairs, one entry per Y.
+    accepted : list of AcceptedRelation
+        Relations found on their own, the least likely by chance first.
+    refinement : Refinement
+        Their group; only the identity where nothing was found.
+    tolerance : Tolerance
+        The noise the search allowed for.
+    """
+
+    active: NDArray[np.bool_]
+    groups: TorqueGroups
+    kinds: list[Pairs]
+    accepted: list[AcceptedRelation]
+    refinement: Refinement
+    tolerance: Tolerance
+
+    @property
+    def saving(self) -> float:
+        """Nats saved by describing the angles of an orbit by its base configuration and noise."""
+        sigma = max(self.refinement.sigma, ROUNDING)
+        return float(self.refinement.freedom * np.log(np.sqrt(2.0 * np.pi / np.e) / sigma))
+
+
+def search_pairs(
+    q: Array, tau: Array, noise: MeasurementNoise | None, largest_entry: int
+) -> PairSearch:
+    """Find the group of relations that pairs obey.
+
+    Parameters
+    ----------
+    q, tau : (N, n) arrays
+        Samples [rad], [N m].
+    noise : MeasurementNoise, optional
+        If not given, torques are taken as exact, and the angles' noise as the level of `SIGMAS`
+        whose relations save most in the description of the recording, then as measured on the
+        pairs themselves.
+    largest_entry : int
+        Largest entry of A that is tried.
+
+    Raises
+    ------
+    Undetermined
+        If the recording lacks torques or configurations, or leaves open whether a joint matters.
+    """
+    active = active_joints(tau, noise)
+    if not active.any():
+        raise Undetermined("samples with a torque: all given torques are zero")
+    same = SAME_TORQUE * float(np.abs(tau).max())
+    same = max(same, 6.0 * noise.torque if noise else 0.0)
+    groups = group_by_torque(q[:, active], tau[:, active], same, SMALLEST_SHARE)
+    _require_enough(groups)
+    if any(not never_moved(q, joint, noise) for joint in np.flatnonzero(~active).tolist()):
+        fit, _ = fit_on_active_joints(q, tau, noise, LARGEST_ERROR)
+        if fit.frequencies[:, ~active].any():
+            raise Undetermined(
+                "torques other than zero on all joints: one whose torque was always zero matters"
+            )
+    kinds = pairs_by_signs(groups)
+
+    def at_noise(sigma: float) -> PairSearch:
+        tolerance = Tolerance(max(sigma, ROUNDING))
+        accepted = _accepted(kinds, groups, tolerance, largest_entry)
+        group = _consistent_group(accepted, kinds, tolerance, groups.q.shape[1])
+        orbits = find_orbits(groups, group, tolerance)
+        refinement = refine_offsets(groups, group, orbits, ROUNDING)
+        return PairSearch(active, groups, kinds, accepted, refinement, tolerance)
+
+    if noise is not None:
+        return at_noise(noise.angle)
+    best = at_noise(SIGMAS[0])
+    for sigma in SIGMAS[1:]:
+        if best.saving > 0.0 and best.tolerance.sigma <= UNMISTAKABLE:
+            break
+        found = at_noise(sigma)
+        best = found if found.saving > best.saving else best
+    if best.saving > 0.0:
+        measured = at_noise(best.refinement.sigma)
+        best = measured if measured.saving > 0.0 else best
+    return best
+
+
+def _accepted(
+    kinds: list[Pairs], groups: TorqueGroups, tolerance: Tolerance, largest_entry: int
+) -> list[AcceptedRelation]:
+    hypotheses = (2 * largest_entry + 1) ** groups.q.shape[1] - 1
+    accepted: list[AcceptedRelation] = []
+    for pairs in kinds:
+        voted = voted_relations(pairs, groups.count, tolerance, LEAST_TORQUES, largest_entry)
+        accepted += accepted_relations(
+            pairs, voted, groups.count, tolerance, LEAST_TORQUES, hypotheses
+        )
+    accepted.sort(key=lambda relation: relation.log10_false_alarms)
+    return accepted
+
+
+def _consistent_group(
+    found: list[AcceptedRelation], kinds: list[Pairs], tolerance: Tolerance, joints: int
+) -> CandidateGroup:
+    """Group of the best relations.
+
+    A relation is dropped if it does not close with the better ones, or if its products with them
+    are not seen: all relations of a group move configurations that can be held to such that can,
+    so the products of observed relations are observed about as often.
+    """
+    unit = np.eye(joints)
+    group = CandidateGroup(
+        unit.astype(np.int64), unit[None], np.zeros((1, joints)), np.ones((1, joints))
+    )
+    for relation in found:
+        if any(
+            np.array_equal(relation.A, A) and (np.abs(wrap(relation.d - d)) < SAME_OFFSET).all()
+            for A, d in zip(group.A, group.d, strict=True)
+        ):
+            continue  # known as a product, or contradicting one in Y
+        larger = completed(
+            CandidateGroup(
+                group.basis,
+                np.concatenate([group.A, relation.A[None].astype(float)]),
+                np.concatenate([group.d, relation.d[None]]),
+                np.concatenate([group.Y, relation.Y[None]]),
+            )
+        )
+        if larger is None:
+            continue
+        support = supports(kinds, larger, tolerance)
+        if support[1:].mean() >= PRODUCTS_SEEN * relation.torques:
+            group = larger
+    return group
+
+
+def _require_enough(groups: TorqueGroups) -> None:
+    """Say what is missing before pairing can begin."""
+    useless = ""
+    if groups.left_out:
+        useless = f" ({groups.left_out} samples have a torque component too near to zero)"
+    if groups.count < LEAST_TORQUES:
+        raise Undetermined(
+            f"{LEAST_TORQUES - groups.count} more torques: {groups.count} different |torque| "
+            f"given, a relation must hold for at least {LEAST_TORQUES}{useless}"
+        )
+    sizes = np.bincount(groups.torque, minlength=groups.count)
+    several = int((sizes >= 2).sum())
+    if several < LEAST_TORQUES:
+        raise Undetermined(
+            f"more configurations: {several} |torque| have been seen at two or more, "
+            f"{LEAST_TORQUES} are needed{useless}"
+        )
