@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx
+from flint import acb, arb, ctx
 from numpy.typing import ArrayLike, NDArray
 
 from symbolic.trigonometric import TrigonometricPolynomial
@@ -65,7 +65,7 @@ def relation_error_bound(
         bound = [arb(0)] * n
         for amplitudes in waves.values():
             for i, (cos, sin) in enumerate(amplitudes):
-                bound[i] = bound[i] + (cos * cos + sin * sin).sqrt()
+                bound[i] = bound[i] + abs(acb(cos, sin))
         return np.array([upper(x) for x in bound])
 
 

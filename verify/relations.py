@@ -21,6 +21,9 @@ Array = NDArray[np.float64]
 FLOAT_NOISE = 1e-12
 """Relative size of what float evaluation of torques may be wrong by."""
 
+VANISHING = 1e-15
+"""Offsets below the rounding of a turn are not written [rad]."""
+
 
 def verify_relation(
     relation: SymmetryRelation,
@@ -142,7 +145,7 @@ def _row(coefficients: Array, offset: float) -> str:
         if x:
             size = "" if abs(x) == 1 else f"{abs(x):.9g} "
             text += (" - " if x < 0 else " + ") + f"{size}q{j + 1}"
-    if offset:
+    if abs(offset) > VANISHING:
         text += (" - " if offset < 0 else " + ") + _angle(abs(offset))
     text = text or " + 0"
     return text[3:] if text.startswith(" + ") else "-" + text[3:]

@@ -257,7 +257,7 @@ def _links(draw: st.DrawFn, generic: bool, massless: bool) -> _Link:
         draw(_directions()) * draw(st.floats(0.05, 0.5)),
         draw(_directions()),
         draw(st.floats(0.1, 10.0) | (st.just(0.0) if massless else st.just(1.0))),
-        draw(_directions()) * draw(st.floats(0.0, 0.5)),
+        draw(_directions()) * draw(st.just(0.0) | st.floats(0.001, 0.5)),
     )
 
 

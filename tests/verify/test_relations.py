@@ -13,6 +13,7 @@ from symbolic.gravity import GravityModel
 from symbolic.kinematic_tree import planar_arm
 from symbolic.relations import SymmetryRelation
 from symbolic.robots import load_robot
+from symbolic.symmetries import primary_symmetries
 from verify import strategies
 from verify.relations import describe_relation, verify_relation, verify_relations
 from verify.verdict import Status, all_passed
@@ -40,6 +41,19 @@ def test_every_relation_of_the_built_in_arms_is_proved(arms, name):
     assert {verdict.status for verdict in verdicts} == {Status.PROVED}
     assert max(verdict.worst_error for verdict in verdicts) < 1e-13
     assert all_passed(verdicts)
+
+
+@pytest.mark.parametrize(("name", "tolerance"), [("ur5", 0.0), ("panda", 0.0), ("panda", 0.1)])
+def test_six_and_seven_joints(name, tolerance):
+    """Free directions, frequencies by the hundred, and an approximate group."""
+    gravity = GravityModel(load_robot(name))
+    group = primary_symmetries(gravity.potential, tolerance)
+    verdicts = verify_relations(group, gravity, tolerance)
+    assert all_passed(verdicts)
+    assert (tolerance > 0.0) == any(verdict.status == "bounded" for verdict in verdicts)
+    for relation, verdict in zip(group, verdicts, strict=True):
+        assert verdict.status in ({"proved"} if relation.exact else {"proved", "bounded"})
+        assert verdict.worst_error <= max(tolerance, 1e-13)
 
 
 def planted_lies():
