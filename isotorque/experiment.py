@@ -1,22 +1,23 @@
-"""The whole scheme on a simulated robot: from the robot to what was learned and its judgement."""
+"""Discovery and learning on a simulated robot, every motion recorded."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from learning.arm import OutcomeKind
-from learning.exploration_settings import ExplorationSettings
 from learning.exploration_step import ExplorationStep
 from learning.learners.by_name import online_learner
 from learning.recorded_simulation import RecordedSimulation
 from learning.recording import Recording
+from learning.recording_reader import RecordingReader
 from learning.run_info import RunInfo
 from learning.scheme import Discovery, Scheme, SchemeSettings
 from learning.simulation import SimulatedArm
@@ -25,6 +26,7 @@ from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from symbolic.robots import Robot, load_robot
 from symbolic.symmetries import primary_symmetries
+from verify.models import torque_rmse
 from verify.targets import dense_targets
 
 Array = NDArray[np.float64]
@@ -32,6 +34,29 @@ Progress = Callable[[str, int, int, str], None]
 
 CURVE_POINTS = 40
 """Points of a learning curve."""
+DATABASE = "run.sqlite"
+DISCOVERING, LEARNING = "discovering symmetries", "learning the inverse statics"
+
+
+@dataclass(frozen=True)
+class ArmOptions:
+    """Which simulated arm, and with which randomness.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of all random choices.
+    physics, engine, settle : str
+        Of the simulation.
+    snap : bool
+        Whether rounded angles in the robot file are snapped.
+    """
+
+    seed: int = 0
+    physics: str = "open_loop"
+    engine: str = "compiled"
+    settle: str = "finished"
+    snap: bool = True
 
 
 @dataclass(frozen=True)
@@ -42,32 +67,24 @@ class RunOptions:
     ----------
     robot : str
         Built-in name or file.
-    seed : int
-        Seed of all random choices.
+    arm : ArmOptions
+        The simulated arm.
+    n_min : int
+        Relations needed before learning begins.
     samples : int
         Torques commanded while learning.
     learner : str
         Name of the online learner.
     symmetries : str
         ``learned``, ``exact`` or ``none``.
-    n_min : int
-        Relations needed before learning begins.
-    physics, engine, settle : str
-        Of the simulation.
-    snap : bool
-        Whether rounded angles in the robot file are snapped.
     """
 
     robot: str
-    seed: int = 0
+    arm: ArmOptions = field(default_factory=ArmOptions)
+    n_min: int = 2
     samples: int = 3000
     learner: str = "local-linear-map-it"
     symmetries: str = "learned"
-    n_min: int = 2
-    physics: str = "open_loop"
-    engine: str = "compiled"
-    settle: str = "finished"
-    snap: bool = True
 
     def __post_init__(self) -> None:
         if self.symmetries not in ("learned", "exact", "none"):
@@ -101,9 +118,7 @@ class RunOutcome:
     group : SymmetryGroup
         The true group.
     arm : SimulatedArm
-        The simulated arm (to test what was learned on).
-    info : RunInfo
-        Versions, physics and options as recorded.
+        The simulated arm (to test on what was learned).
     scheme : Scheme
         The learner's side: relations, SST, BCTS, model.
     motions : list of Discovery
@@ -121,23 +136,20 @@ class RunOutcome:
     gravity: GravityModel
     group: SymmetryGroup
     arm: SimulatedArm
-    info: RunInfo
     scheme: Scheme
     motions: list[Discovery] = field(default_factory=list)
     steps: list[ExplorationStep] = field(default_factory=list)
     curve: list[CurvePoint] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
 
-    def settled(self, items: list[Discovery] | list[ExplorationStep]) -> tuple[Array, Array]:
-        """Return settled configurations and torques among motions or steps, (m, n) each."""
-        n = self.robot.n
-        kept = [x.outcome for x in items if x.outcome.kind is OutcomeKind.SETTLED]
-        q = np.array([o.q for o in kept]).reshape(-1, n)
-        return q, np.array([o.torque for o in kept]).reshape(-1, n)
+    def ends(self) -> dict[OutcomeKind, int]:
+        """How the motions of the discovery ended."""
+        kinds = [motion.outcome.kind for motion in self.motions]
+        return {kind: kinds.count(kind) for kind in OutcomeKind}
 
 
-def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:
-    """Discover, learn, and keep every motion; resumes a run that was stopped.
+def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:
+    """Find out what the arm can hold, and its symmetries; resumes what was stopped.
 
     Parameters
     ----------
@@ -151,81 +163,133 @@ def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOut
     Returns
     -------
     RunOutcome
+        Without a model yet.
 
     Raises
     ------
     InputError
         For a robot or options that cannot be used, and for a directory that holds another run.
     """
-    robot = load_robot(options.robot, snap=options.snap)
+    robot = load_robot(options.robot, snap=options.arm.snap)
     clock: dict[str, float] = {}
     with _timed(clock, "derivation"):
         gravity = GravityModel(robot)
         group = primary_symmetries(gravity.potential)
-    arm_rng, rng = np.random.default_rng(options.seed).spawn(2)
-    arm = SimulatedArm(
-        robot,
-        physics=options.physics,
-        engine=options.engine,
-        settle=options.settle,
-        rng=arm_rng,
+    arm = _arm(robot, options.arm)
+    info = _info(robot, arm, options.arm, "discover", {"n_min": options.n_min})
+    with (
+        Recording.open_or_create(out / DATABASE, info) as recording,
+        _timed(clock, "discovery"),
+    ):
+        recorded = RecordedSimulation(arm, recording, phase="discovery")
+        scheme = Scheme(
+            recorded,
+            _generator(options.arm, 0),
+            lambda known, _range: online_learner(options.learner, known),
+            SchemeSettings(n_min=options.n_min, samples=options.samples),
+            group=group if options.symmetries == "exact" else None,
+            use_symmetries=options.symmetries != "none",
+        )
+        result = RunOutcome(options, robot, gravity, group, arm, scheme, seconds=clock)
+        for motion in scheme.discover():
+            result.motions.append(motion)
+            progress(DISCOVERING, len(result.motions), 0, _gate_note(scheme))
+        progress(DISCOVERING, len(result.motions), len(result.motions), _gate_note(scheme))
+        recorded.finish()
+    return result
+
+
+def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
+    """Explore and learn the inverse statics model after a discovery; resumes what was stopped.
+
+    Parameters
+    ----------
+    result
+        From `discover_symmetries`; model, steps and curve are added to it.
+    out
+        The same directory.
+    progress
+        Called as ``progress(stage, done, total, note)``.
+    """
+    options = result.options
+    arm = _arm(result.robot, options.arm)
+    chosen = {k: getattr(options, k) for k in ("samples", "learner", "symmetries")}
+    info = _info(result.robot, arm, options.arm, "learn", chosen)
+    with (
+        Recording.open_or_create(out / DATABASE, info) as recording,
+        _timed(result.seconds, "learning"),
+    ):
+        recorded = RecordedSimulation(arm, recording, phase="learning")
+        result.scheme.arm = recorded
+        result.scheme.rng = _generator(options.arm, 1)
+        _follow(result, progress)
+        recorded.finish()
+
+
+def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:
+    """Discover, then learn: the whole scheme of Fig. 8."""
+    result = discover_symmetries(options, out, progress)
+    learn_model(result, out, progress)
+    return result
+
+
+def with_recorded_discovery(options: RunOptions, out: Path) -> RunOptions:
+    """Return the options with the arm of the discovery that ``out`` already holds, if any."""
+    path = out / DATABASE
+    if not path.is_file():
+        return options
+    with RecordingReader(path, check=False) as reader:
+        for part in reader.parts:
+            if part.info.part == "discover":
+                recorded = part.info.options
+                names = {f.name for f in fields(ArmOptions)}
+                arm = ArmOptions(**{k: v for k, v in recorded["made_with"].items() if k in names})
+                return replace(options, arm=arm, n_min=int(recorded["n_min"]))
+    return options
+
+
+def _follow(result: RunOutcome, progress: Progress) -> None:
+    dense = dense_targets(result.robot.limits).q
+    truth = result.gravity.torque(dense)
+    active = [name not in result.gravity.free_joints for name in result.robot.joint_names]
+    total = result.options.samples
+    every = max(1, total // CURVE_POINTS)
+    for step in result.scheme.learn():
+        result.steps.append(step)
+        count, note = len(result.steps), ""
+        if count % every == 0 or count == total:
+            learner = result.scheme.learner
+            assert learner is not None
+            rmse = torque_rmse(learner.predict(dense) - truth, active)
+            result.curve.append(CurvePoint(count, rmse, step.explored))
+            note = f"RMSE {rmse:.4g} N m"
+        progress(LEARNING, count, total, note)
+
+
+def _generator(options: ArmOptions, stage: int) -> np.random.Generator:
+    """Return the generator of a stage: learning does not depend on how long discovery took."""
+    return np.random.default_rng(np.random.SeedSequence(options.seed, spawn_key=(stage,)))
+
+
+def _arm(robot: Robot, options: ArmOptions) -> SimulatedArm:
+    return SimulatedArm(
+        robot, physics=options.physics, engine=options.engine, settle=options.settle
     )
-    written = asdict(options) | {"arm": arm.settings.as_json()}
-    del written["robot"]  # the file may move; the digest says which robot it is
-    info = RunInfo(
+
+
+def _info(
+    robot: Robot, arm: SimulatedArm, options: ArmOptions, part: str, more: dict[str, Any]
+) -> RunInfo:
+    return RunInfo(
         robot.name,
         robot.digest,
         robot.joint_names,
         options.physics,
         options.engine,
         options.seed,
-        written,
+        {**more, "made_with": asdict(options), "arm": arm.settings.as_json()},
+        part,
     )
-    settings = SchemeSettings(
-        exploration=ExplorationSettings(), n_min=options.n_min, samples=options.samples
-    )
-    with Recording.open_or_create(out / "run.sqlite", info) as recording:
-        recorded = RecordedSimulation(arm, recording, phase="discovery")
-        scheme = Scheme(
-            recorded,
-            rng,
-            lambda known, _range: online_learner(options.learner, known),
-            settings,
-            group=group if options.symmetries == "exact" else None,
-            use_symmetries=options.symmetries != "none",
-        )
-        result = RunOutcome(options, robot, gravity, group, arm, info, scheme, seconds=clock)
-        with _timed(clock, "discovery"):
-            for motion in scheme.discover():
-                result.motions.append(motion)
-                progress("discovering symmetries", len(result.motions), 0, _gate_note(scheme))
-            count = len(result.motions)
-            progress("discovering symmetries", count, count, _gate_note(scheme))
-        recorded.phase = "learning"
-        with _timed(clock, "learning"):
-            _learn(result, progress)
-        recorded.finish()
-    return result
-
-
-def _learn(result: RunOutcome, progress: Progress) -> None:
-    dense = dense_targets(result.robot.limits).q
-    truth = result.gravity.torque(dense)
-    active = np.array([name not in result.gravity.free_joints for name in result.robot.joint_names])
-    total = result.options.samples
-    every = max(1, total // CURVE_POINTS)
-    for step in result.scheme.learn():
-        result.steps.append(step)
-        count = len(result.steps)
-        if count % every == 0 or count == total:
-            learner = result.scheme.learner
-            assert learner is not None
-            error = (learner.predict(dense) - truth)[:, active]
-            rmse = float(np.sqrt(np.mean(error**2)))
-            result.curve.append(CurvePoint(count, rmse, step.explored))
-            progress("learning the inverse statics", count, total, f"RMSE {rmse:.4f} N m")
-        else:
-            progress("learning the inverse statics", count, total, "")
 
 
 def _gate_note(scheme: Scheme) -> str:

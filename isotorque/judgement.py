@@ -72,21 +72,21 @@ def judge_run(run: RunOutcome) -> RunReport:
 
 def _setup(run: RunOutcome) -> RunSetup:
     options = run.options
-    command = ["isotorque", "run", options.robot, "--out", "DIR", "--seed", str(options.seed)]
+    command = ["isotorque", "run", options.robot, "--out", "DIR", "--seed", str(options.arm.seed)]
     command += ["--samples", str(options.samples), "--learner", options.learner]
     command += ["--symmetries", options.symmetries, "--n-min", str(options.n_min)]
-    command += ["--physics", options.physics, "--engine", options.engine]
-    command += ["--settle", options.settle] + ([] if options.snap else ["--no-snap"])
+    command += ["--physics", options.arm.physics, "--engine", options.arm.engine]
+    command += ["--settle", options.arm.settle] + ([] if options.arm.snap else ["--no-snap"])
     return RunSetup(
         robot=run.robot.name,
         digest=run.robot.digest,
         joint_names=run.robot.joint_names,
-        physics=options.physics,
-        engine=options.engine,
+        physics=options.arm.physics,
+        engine=options.arm.engine,
         strategy="constrained direction sampling",
         learner=options.learner,
         symmetries=options.symmetries,
-        seed=options.seed,
+        seed=options.arm.seed,
         versions=tuple(sorted(software_versions().items())),
         command=shlex.join(command),
     )

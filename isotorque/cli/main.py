@@ -8,7 +8,7 @@ from typing import NoReturn
 
 import typer
 
-from isotorque.cli import derive, domain, robots, simulate, symmetries, verify
+from isotorque.cli import derive, discover, domain, relations, robots, simulate, symmetries, verify
 from isotorque.cli import run as run_command
 from symbolic.errors import InputError
 
@@ -28,6 +28,8 @@ app.command("derive")(derive.derive)
 app.command("symmetries")(symmetries.symmetries)
 app.command("domain")(domain.domain)
 app.command("simulate")(simulate.simulate)
+app.command("discover")(discover.discover)
+app.command("relations")(relations.relations)
 app.command("verify")(verify.verify)
 app.command("run")(run_command.run)
 

@@ -2,35 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-import typer
-
 from isotorque.cli.options import Engine, Json, NoSnap, Out, Physics, Quiet, RobotName, Seed, Settle
 from isotorque.cli.output import emit_json, say
+from isotorque.cli.run_options import LearnerName, NMin, Samples, Symmetries
 
 
 def run(
     robot: RobotName,
     out: Out,
-    samples: Annotated[
-        int, typer.Option("--samples", min=1, help="Torques commanded while learning.")
-    ] = 3000,
-    learner: Annotated[
-        str,
-        typer.Option(
-            "--learner",
-            metavar="NAME",
-            help="local-linear-map, local-linear-map-it or recursive-least-squares.",
-        ),
-    ] = "local-linear-map-it",
-    symmetries: Annotated[
-        str,
-        typer.Option("--symmetries", metavar="WHICH", help="learned, exact or none."),
-    ] = "learned",
-    n_min: Annotated[
-        int, typer.Option("--n-min", min=1, help="Relations needed before learning begins.")
-    ] = 2,
+    samples: Samples = 3000,
+    learner: LearnerName = "local-linear-map-it",
+    symmetries: Symmetries = "learned",
+    n_min: NMin = 2,
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
     settle: Settle = "finished",
@@ -38,29 +21,19 @@ def run(
     no_snap: NoSnap = False,
     json: Json = False,
     quiet: Quiet = False,
-) -> None:
+) -> int:
     """Discover symmetries, explore, learn, and judge it all; ends with OUT/report.html.
 
     The same command resumes a run that was stopped.
     """
     from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.experiment import RunOptions, run_experiment
+    from isotorque.experiment import ArmOptions, RunOptions, run_experiment
     from isotorque.judgement import judge_run
     from verify.report import write_report
 
-    options = RunOptions(
-        robot=robot,
-        seed=seed,
-        samples=samples,
-        learner=learner,
-        symmetries=symmetries,
-        n_min=n_min,
-        physics=physics,
-        engine=engine,
-        settle=settle,
-        snap=not no_snap,
-    )
+    arm = ArmOptions(seed, physics, engine, settle, not no_snap)
+    options = RunOptions(robot, arm, n_min, samples, learner, symmetries)
     output_directory(out)
     with progress_bars(quiet) as progress:
         outcome = run_experiment(options, out, progress)
@@ -71,3 +44,4 @@ def run(
     if json:
         emit_json(document)
     say(f"report: {page}", quiet)
+    return 0 if report.passed else 1

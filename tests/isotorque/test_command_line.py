@@ -171,7 +171,17 @@ def test_bad_robot_files_are_one_line(call, tmp_path, text, words):
 
 
 def test_help_of_every_command(call):
-    for command in ("robots", "derive", "symmetries", "domain", "simulate", "verify", "run"):
+    for command in (
+        "robots",
+        "derive",
+        "symmetries",
+        "domain",
+        "simulate",
+        "discover",
+        "relations",
+        "verify",
+        "run",
+    ):
         code, out, _ = call(command, "--help")
         assert code == 0
         assert "--json" in out

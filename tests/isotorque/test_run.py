@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
-from isotorque.experiment import RunOptions, run_experiment
+from isotorque.experiment import ArmOptions, RunOptions, run_experiment
 from symbolic.errors import InputError
 from symbolic.robots import load_robot
 
@@ -99,7 +99,7 @@ def _made(path):
         ({"samples": 0}, "--samples"),
         ({"n_min": 0}, "--n-min"),
         ({"learner": "parrot"}, "parrot"),
-        ({"physics": "magic"}, "open_loop"),
+        ({"arm": ArmOptions(physics="magic")}, "open_loop"),
     ],
 )
 def test_options_that_make_no_sense_are_refused(changes, word, tmp_path):

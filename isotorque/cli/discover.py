@@ -1,0 +1,57 @@
+"""``isotorque discover``: Algorithm 1, everything recorded."""
+
+from __future__ import annotations
+
+from isotorque.cli.options import Engine, Json, NoSnap, Out, Physics, Quiet, RobotName, Seed, Settle
+from isotorque.cli.output import emit_json, row
+from isotorque.cli.run_options import NMin
+
+
+def discover(
+    robot: RobotName,
+    out: Out,
+    n_min: NMin = 2,
+    physics: Physics = "open_loop",
+    engine: Engine = "compiled",
+    settle: Settle = "finished",
+    seed: Seed = 0,
+    no_snap: NoSnap = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Play torque profiles until the symmetries are known; every motion is kept in OUT.
+
+    The same command resumes what was stopped; `relations` and `learn` go on from OUT.
+    """
+    from isotorque.cli.files import output_directory
+    from isotorque.cli.progress import progress_bars
+    from isotorque.experiment import ArmOptions, RunOptions, discover_symmetries
+    from learning.arm import OutcomeKind
+
+    arm = ArmOptions(seed, physics, engine, settle, not no_snap)
+    options = RunOptions(robot, arm, n_min)
+    output_directory(out)
+    with progress_bars(quiet) as progress:
+        found = discover_symmetries(options, out, progress)
+    ends = found.ends()
+    scheme = found.scheme
+    learned = scheme.learned
+    document = {
+        "robot": found.robot.name,
+        "torques": scheme.targets,
+        "settled": ends[OutcomeKind.SETTLED],
+        "limit_hits": ends[OutcomeKind.LIMIT],
+        "timeouts": ends[OutcomeKind.TIMEOUT],
+        "relations": 1 if learned is None else learned.order,
+        "missing": None if learned is None else learned.missing,
+    }
+    if json:
+        emit_json(document)
+        return
+    print(f"{document['settled']} settled, {document['limit_hits']} met a limit,", end=" ")
+    print(f"{document['timeouts']} did not settle in time")
+    for target in scheme.targets:
+        print(f"  target torque {row(target)} N m")
+    print(f"{document['relations']} relations known; see them with: isotorque relations {out}")
+    if document["missing"]:
+        print(f"missing: {document['missing']}")
