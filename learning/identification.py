@@ -11,6 +11,7 @@ from learning.group_fit import GroupFit, torque_uncertainty
 from learning.group_search import candidate_relations, largest_consistent_group
 from learning.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
 from learning.lifting import lifted_relations
+from learning.offset_snapping import snapped_offsets
 from learning.potential_fit import FittedPotential, present_frequencies
 from learning.samples import static_samples
 from learning.silent_joints import fit_on_active_joints
@@ -18,7 +19,7 @@ from symbolic.relations import SymmetryGroup, identity
 
 Array = NDArray[np.float64]
 
-SIGNIFICANCE = 1e-3
+SIGNIFICANCE = 1e-4
 """Hypotheses with a smaller p-value are contradicted by the data."""
 PRESENCE = (1e-2, 1e-4, 1e-6)
 """Levels at which a frequency counts as present; each gives candidate groups."""
@@ -30,7 +31,11 @@ BOUND_DEVIATIONS = 3.0
 
 
 def identify(
-    q: ArrayLike, tau: ArrayLike, *, noise: MeasurementNoise | None = None
+    q: ArrayLike,
+    tau: ArrayLike,
+    *,
+    noise: MeasurementNoise | None = None,
+    snap: bool = True,
 ) -> LearnedSymmetries:
     """Find the symmetry group of the torque map behind static samples.
 
@@ -42,6 +47,9 @@ def identify(
         Torques that held them [N m].
     noise : MeasurementNoise, optional
         Noise levels where known; estimated from the misfit otherwise.
+    snap : bool
+        Round offsets to multiples of a right angle where all of them agree (`snapped_offsets`);
+        every relation says whether that was done.
 
     Returns
     -------
@@ -88,7 +96,7 @@ def identify(
     if best is None:
         missing = "more samples: no coefficient of the fitted potential stands out of the noise"
         return _nothing(n, missing, fit)
-    return claim(fit, best, unmoved)
+    return claim(fit, best, unmoved, snap)
 
 
 def _nothing(n: int, missing: str, fit: FittedPotential | None = None) -> LearnedSymmetries:
@@ -119,7 +127,9 @@ def _best_group(fit: FittedPotential) -> GroupFit | None:
     return best
 
 
-def claim(fit: FittedPotential, best: GroupFit, unmoved: list[int]) -> LearnedSymmetries:
+def claim(
+    fit: FittedPotential, best: GroupFit, unmoved: list[int], snap: bool
+) -> LearnedSymmetries:
     """State a group that the data agree with, or say how much data would be needed to claim it.
 
     Parameters
@@ -129,11 +139,15 @@ def claim(fit: FittedPotential, best: GroupFit, unmoved: list[int]) -> LearnedSy
         Of the same fit.
     unmoved : list of int
         Joints that never moved.
+    snap : bool
+        Round offsets to multiples of a right angle where they agree.
     """
-    bound, rms = torque_uncertainty(fit, best.group, BOUND_DEVIATIONS)
+    rounded = snapped_offsets(best.group, best.offset_errors) if snap else None
+    group = rounded or best.group
+    bound, rms = torque_uncertainty(fit, group, BOUND_DEVIATIONS)
     n = bound.shape[1]
     size = fit.rms_torque()
-    involved = best.group.basis.any(axis=0)
+    involved = group.basis.any(axis=0)
     excess = float((rms / np.where(size > 0.0, size, np.inf))[:, involved].max(initial=0.0))
     excess /= LARGEST_ERROR
     if excess > 1.0:
@@ -144,9 +158,11 @@ def claim(fit: FittedPotential, best: GroupFit, unmoved: list[int]) -> LearnedSy
             "are allowed"
         )
         return _nothing(n, missing, fit)
-    relations = lifted_relations(best.group, bound)
+    relations = lifted_relations(group, bound)
     learned = tuple(
-        LearnedRelation(r, Knowledge.IDENTIFIED, 0, error, best.p_value)
+        LearnedRelation(
+            r, Knowledge.IDENTIFIED, 0, error, best.p_value, snapped=rounded is not None
+        )
         for r, error in zip(relations, best.offset_errors, strict=True)
     )
     unknown = None

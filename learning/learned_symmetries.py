@@ -75,7 +75,7 @@ class LearnedRelation:
     support : int
         Number of distinct torques |tau| among the pairs that obey it; 0 if none was recorded.
     standard_error : (r,) array
-        Standard error of d in y = B q coordinates [rad].
+        Standard error of d in y = B q coordinates [rad], as measured.
     p_value : float
         Probability of a misfit at least as large if the relation holds: small speaks against it.
     log10_false_alarms : float
@@ -83,6 +83,8 @@ class LearnedRelation:
         decimal logarithm; NaN where it was not found by pairing.
     regression : FreeRegression or None
         Free real regression on the pairs.
+    snapped : bool
+        Whether d was rounded to multiples of a right angle, with which the measured d agrees.
     """
 
     relation: SymmetryRelation
@@ -92,6 +94,7 @@ class LearnedRelation:
     p_value: float
     log10_false_alarms: float = float("nan")
     regression: FreeRegression | None = None
+    snapped: bool = False
 
 
 @dataclass(frozen=True, eq=False)

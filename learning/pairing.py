@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -9,6 +11,7 @@ from learning.errors_in_variables import MeasurementNoise, Undetermined
 from learning.group_fit import CandidateGroup
 from learning.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
 from learning.lifting import lifted_relations
+from learning.offset_snapping import snapped_offsets
 from learning.pair_evidence import PairEvidence
 from learning.pair_search import LEAST_TORQUES, PairSearch, search_pairs
 from learning.samples import static_samples
@@ -23,6 +26,7 @@ def pair_relations(
     *,
     noise: MeasurementNoise | None = None,
     largest_entry: int = 2,
+    snap: bool = True,
 ) -> LearnedSymmetries:
     """Find relations between configurations that the same |torque| holds.
 
@@ -37,6 +41,8 @@ def pair_relations(
         of the angles as the one under which the relations are the least likely to be chance.
     largest_entry : int
         Largest entry of A that is tried.
+    snap : bool
+        Round offsets to multiples of a right angle where all of them agree.
 
     Returns
     -------
@@ -68,7 +74,7 @@ def pair_relations(
         return _nothing(configurations.shape[1], str(lacking))
     if len(found.refinement.group) == 1:
         return _nothing(configurations.shape[1], nothing_stands_out(found))
-    return learned_from_pairs(found)
+    return learned_from_pairs(found, snap)
 
 
 def nothing_stands_out(found: PairSearch) -> str:
@@ -85,9 +91,12 @@ def _nothing(n: int, missing: str) -> LearnedSymmetries:
     return LearnedSymmetries(SymmetryGroup([unit]), (relation,), missing, "pairing")
 
 
-def learned_from_pairs(found: PairSearch) -> LearnedSymmetries:
+def learned_from_pairs(found: PairSearch, snap: bool) -> LearnedSymmetries:
     """State the group that pairs show, in the coordinates of all joints, with its evidence."""
     refinement = found.refinement
+    rounded = snapped_offsets(refinement.group, refinement.offset_errors) if snap else None
+    if rounded is not None:
+        refinement = dataclasses.replace(refinement, group=rounded)
     evidence = PairEvidence(found.kinds, refinement, found.accepted, found.tolerance)
     group, active = refinement.group, found.active
     Y = np.ones((len(group), len(active)))
@@ -106,6 +115,7 @@ def learned_from_pairs(found: PairSearch) -> LearnedSymmetries:
                 evidence.p_value(i),
                 evidence.log10_false_alarms(i),
                 evidence.regression(i),
+                rounded is not None,
             )
         )
     return LearnedSymmetries(

@@ -34,6 +34,7 @@ def learn_relations(
     *,
     noise: MeasurementNoise | None = None,
     largest_entry: int = 2,
+    snap: bool = True,
 ) -> LearnedSymmetries:
     """Learn the symmetry group of the torque map from static samples, by both methods.
 
@@ -47,6 +48,9 @@ def learn_relations(
         Noise levels where known; estimated otherwise.
     largest_entry : int
         Largest entry of A that pairing tries.
+    snap : bool
+        Round offsets to multiples of a right angle where all of them agree; every relation says
+        whether that was done.
 
     Returns
     -------
@@ -82,7 +86,7 @@ def learn_relations(
     6
     """
     configurations, torques = static_samples(q, tau)
-    identified = identify(configurations, torques, noise=noise)
+    identified = identify(configurations, torques, noise=noise, snap=snap)
     fit = identified.fit
     try:
         pairs = search_pairs(configurations, torques, _noise_of_pairs(noise, fit), largest_entry)
@@ -92,10 +96,10 @@ def learn_relations(
         return dataclasses.replace(
             identified, missing=f"{identified.missing}; for pairing: {lacking}", method=METHOD
         )
-    paired = learned_from_pairs(pairs)
+    paired = learned_from_pairs(pairs, snap)
     if identified.missing is not None and identified.order == 1:
         return _pairs_first(pairs, paired, identified)
-    return _joined(pairs, paired, identified)
+    return _joined(pairs, paired, identified, snap)
 
 
 def _noise_of_pairs(
@@ -150,7 +154,7 @@ def _pairs_first(
 
 
 def _joined(
-    pairs: PairSearch, paired: LearnedSymmetries, identified: LearnedSymmetries
+    pairs: PairSearch, paired: LearnedSymmetries, identified: LearnedSymmetries, snap: bool
 ) -> LearnedSymmetries:
     """Both methods spoke: join their groups where the potential agrees, and add the evidence."""
     fit = identified.fit
@@ -167,7 +171,7 @@ def _joined(
         if joined is None or joined.p_value < SIGNIFICANCE:
             contradicted.append(learned)
             continue
-        claimed = claim(fit, joined, [])
+        claimed = claim(fit, joined, [], snap)
         if claimed.missing is None:
             result = dataclasses.replace(claimed, missing=identified.missing)
             group = joined.group
