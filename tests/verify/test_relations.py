@@ -98,9 +98,7 @@ def test_the_map_of_the_issue_is_proved_and_its_neighbour_refuted(two_link):
     assert pinocchio_error("2r", neighbour, verdict.counterexample) > TOLERANCE
 
 
-@FEW
-@given(st.data())
-def test_random_arms_truth_is_proved_and_lies_are_refuted(data):
+def judged_rightly(data):
     arm = data.draw(strategies.known_arms(1, 3))
     true = data.draw(strategies.relations(arm.group))
     assert verify_relation(true, arm.gravity, 0.0).status is Status.PROVED
@@ -113,6 +111,19 @@ def test_random_arms_truth_is_proved_and_lies_are_refuted(data):
         - lie.torque(arm.gravity.potential.gradient(q))
     ).max()
     assert 0.0 < error <= verdict.worst_error * (1 + 1e-6) + 1e-12
+
+
+@FEW
+@given(st.data())
+def test_random_arms_truth_is_proved_and_lies_are_refuted(data):
+    judged_rightly(data)
+
+
+@pytest.mark.slow
+@settings(FEW, max_examples=500)
+@given(st.data())
+def test_five_hundred_random_arms(data):
+    judged_rightly(data)
 
 
 def test_a_small_error_is_bounded_and_the_bound_is_sharp(two_link):
