@@ -9,8 +9,6 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from symbolic.domain import FundamentalDomain
 from symbolic.errors import InputError
@@ -23,7 +21,6 @@ from verify.models import verify_model
 from verify.report import render_report, verdicts_page, write_report
 from verify.report_document import report_document
 from verify.report_figures import report_pictures
-from verify.report_text import map_lines, matrix, number, vector
 from verify.run_parts import (
     DiscoveryReport,
     ExplorationReport,
@@ -304,27 +301,3 @@ def test_directories_that_cannot_be_written_are_refused(tmp_path):
     with pytest.raises(InputError, match=r"report.json: file is Is a directory"):
         write_report(RunReport(SETUP), tmp_path)
     assert not list(tmp_path.glob("*.partial"))
-
-
-@settings(max_examples=200, deadline=None, derandomize=True)
-@given(st.floats(-1e300, 1e300))
-def test_numbers_read_back_to_three_digits(value):
-    text = str(number(value))
-    plain = text.replace("\N{NARROW NO-BREAK SPACE}", "").replace("−", "-")
-    plain = plain.replace("·10<sup>", "e").replace("</sup>", "")
-    assert float(plain) == pytest.approx(value, rel=6e-3, abs=1e-300)
-
-
-def test_numbers_that_are_none():
-    assert str(number(None)) == str(number(float("nan"))) == str(number(float("inf"))) == "–"
-    assert str(number(1234567)) == "1\N{NARROW NO-BREAK SPACE}234\N{NARROW NO-BREAK SPACE}567"
-    assert str(vector([1.0, -0.5])) == "(1, −0.5)"
-    assert str(matrix(np.array([1.0, 2.0]))).count("<tr>") == 2
-
-
-def test_maps_are_written_with_signs():
-    relation = SymmetryRelation([[0, -1], [0.5, 2]], [-0.25, 1e-9], [1, 1])
-    text = re.sub(r"<sub>(\d)</sub>", r"\1", str(map_lines(relation)))
-    assert text == "q1′ = −q2 − 0.25<br>q2′ = 0.5 q1 + 2 q2<br>τ′ = τ"
-    zero = SymmetryRelation([[0.0]], [0.0], [-1])
-    assert "= 0<br>" in str(map_lines(zero))
