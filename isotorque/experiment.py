@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from learning.arm import OutcomeKind
 from learning.exploration_step import ExplorationStep
 from learning.learners.by_name import online_learner
+from learning.model_files import SavedModel, save_model
 from learning.recorded_simulation import RecordedSimulation
 from learning.recording import Recording
 from learning.recording_reader import RecordingReader
@@ -231,6 +232,14 @@ def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOut
     result = discover_symmetries(options, out, progress)
     learn_model(result, out, progress)
     return result
+
+
+def save_run_model(result: RunOutcome, out: Path) -> Path:
+    """Write the learned model to ``out``; return the path of its JSON."""
+    robot = result.robot
+    notes = {"learner": result.options.learner, "symmetries": result.options.symmetries}
+    saved = SavedModel(result.scheme.learner, robot.name, robot.digest, robot.joint_names, notes)
+    return save_model(saved, out)
 
 
 def with_recorded_discovery(options: RunOptions, out: Path) -> RunOptions:

@@ -8,7 +8,17 @@ from typing import NoReturn
 
 import typer
 
-from isotorque.cli import derive, discover, domain, relations, robots, simulate, symmetries, verify
+from isotorque.cli import (
+    derive,
+    discover,
+    domain,
+    learn,
+    relations,
+    robots,
+    simulate,
+    symmetries,
+    verify,
+)
 from isotorque.cli import run as run_command
 from symbolic.errors import InputError
 
@@ -30,6 +40,7 @@ app.command("domain")(domain.domain)
 app.command("simulate")(simulate.simulate)
 app.command("discover")(discover.discover)
 app.command("relations")(relations.relations)
+app.command("learn")(learn.learn)
 app.command("verify")(verify.verify)
 app.command("run")(run_command.run)
 

@@ -28,7 +28,7 @@ def run(
     """
     from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.experiment import ArmOptions, RunOptions, run_experiment
+    from isotorque.experiment import ArmOptions, RunOptions, run_experiment, save_run_model
     from isotorque.judgement import judge_run
     from verify.report import write_report
 
@@ -40,6 +40,7 @@ def run(
         progress("judging", 0, 1, "")
         report = judge_run(outcome)
         progress("judging", 1, 1, "")
+    save_run_model(outcome, out)
     page, document = write_report(report, out)
     if json:
         emit_json(document)

@@ -14,14 +14,24 @@ from isotorque.cli.output import emit_json
 def verify(
     what: Annotated[
         Path,
-        typer.Argument(metavar="WHAT", help="A relations file (JSON).", show_default=False),
+        typer.Argument(
+            metavar="WHAT",
+            help="A relations file, a model.json, or the directory of a run.",
+            show_default=False,
+        ),
     ],
     robot: Annotated[
         str, typer.Option("--robot", metavar="ROBOT", help="Robot it is about.", show_default=False)
     ],
     tolerance: Annotated[
-        float, typer.Option("--tolerance", metavar="NM", help="Torque error allowed [N m].")
-    ] = 1e-9,
+        float | None,
+        typer.Option(
+            "--tolerance",
+            metavar="NM",
+            help="Torque error allowed [N m]: of each relation (1e-9), of a model's RMSE (0.01).",
+            show_default=False,
+        ),
+    ] = None,
     report: Annotated[
         Path | None,
         typer.Option("--report", metavar="FILE.html", help="Write a report.", show_default=False),
@@ -31,18 +41,17 @@ def verify(
     quiet: Quiet = False,
 ) -> int:
     """Judge what was learned or claimed: proof, bound, or a counterexample."""
+    from isotorque.verification import verify_path
     from symbolic.gravity import GravityModel
     from symbolic.robots import load_robot
-    from verify.claims import verify_relations_file
-    from verify.relation_files import load_relations
 
-    gravity = GravityModel(load_robot(robot, snap=not no_snap))
-    verdicts = verify_relations_file(load_relations(what), gravity, tolerance)
+    loaded = load_robot(robot, snap=not no_snap)
+    gravity = GravityModel(loaded)
+    verdicts = verify_path(what, loaded, gravity, tolerance)
     passed = all(verdict.passed for verdict in verdicts)
     if report is not None:
-        from verify.report import verdicts_page
-
         from isotorque.cli.files import write_whole
+        from verify.report import verdicts_page
 
         write_whole(report, verdicts_page(f"{what.name} against {gravity.name}", verdicts))
     if json:

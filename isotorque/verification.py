@@ -1,0 +1,65 @@
+"""What ``isotorque verify`` judges: a relations file, a saved model, or both in a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from learning.model_files import load_model
+from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
+from symbolic.robots import Robot
+from verify.checked_json import read_json
+from verify.claims import verify_relations_file
+from verify.models import verify_model
+from verify.relation_files import load_relations
+from verify.verdict import Verdict
+
+RELATION_TOLERANCE = 1e-9
+MODEL_TOLERANCE = 0.01
+
+
+def verify_path(
+    path: Path, robot: Robot, gravity: GravityModel, tolerance: float | None
+) -> tuple[Verdict, ...]:
+    """Judge whatever a path holds.
+
+    Parameters
+    ----------
+    path
+        A relations file, a ``model.json``, or a directory with either.
+    robot, gravity
+        The truth.
+    tolerance
+        Torque error allowed [N m]; None: 1e-9 for relations, 0.01 for the RMSE of models.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to judge, or a model of another robot.
+    """
+    if not path.is_dir():
+        return _one(path, robot, gravity, tolerance)
+    found = [path / name for name in ("relations.json", "model.json") if (path / name).is_file()]
+    if not found:
+        raise InputError(path, "directory", "without results", "relations.json or model.json in it")
+    return tuple(verdict for file in found for verdict in _one(file, robot, gravity, tolerance))
+
+
+def _one(
+    path: Path, robot: Robot, gravity: GravityModel, tolerance: float | None
+) -> tuple[Verdict, ...]:
+    document = read_json(path)
+    if document.is_object and document.optional("kind") is not None:
+        return _model(path, robot, gravity, tolerance)
+    allowed = RELATION_TOLERANCE if tolerance is None else tolerance
+    return verify_relations_file(load_relations(path), gravity, allowed)
+
+
+def _model(
+    path: Path, robot: Robot, gravity: GravityModel, tolerance: float | None
+) -> tuple[Verdict, ...]:
+    saved = load_model(path)
+    if saved.joint_names != robot.joint_names:
+        raise InputError(path, "joints", list(saved.joint_names), f"{list(robot.joint_names)}")
+    allowed = MODEL_TOLERANCE if tolerance is None else tolerance
+    return verify_model(saved.learner, gravity, limits=robot.limits, tolerance=allowed).verdicts
