@@ -66,8 +66,8 @@ class Sensors:
         """Return the torque (n,) [N m] that an outside holder of the arm measures."""
         bound = self._noise.holding_torque
         if bound > 0.0 and self._rng is not None:
-            return torque + self._projector @ self._rng.uniform(-bound, bound, len(torque))
-        return torque.copy()
+            torque = torque + self._rng.uniform(-bound, bound, len(torque))
+        return self._projector @ torque
 
     def generator_state(self) -> dict[str, Any] | None:
         """Return the state of the generator, None if there is none."""

@@ -97,13 +97,28 @@ def find_free_directions(equations: Equations) -> FreeDirections:
     scale = np.max([abs(np.diag(k)) for k in sampled], axis=0)
     _, values, rows = np.linalg.svd(stacked)
     rank = int((values > _RELATIVE_ZERO * max(values[0], 1e-12)).sum())
-    basis = _cleaned(rows[rank:])
+    active, basis = _split(_cleaned(rows[:rank].T @ rows[:rank]))
     return FreeDirections(
         basis=basis,
-        active=_cleaned(rows[:rank]),
-        projector=_cleaned(np.eye(n) - basis.T @ basis),
+        active=active,
+        projector=_cleaned(active.T @ active),
         stiffness_scale=np.where(scale > _RELATIVE_ZERO * scale.max(), scale, 0.0),
     )
+
+
+def _split(projector: Array) -> tuple[Array, Array]:
+    """Return orthonormal bases of the range and the kernel of an orthogonal projector.
+
+    Single joints that belong to one or the other are vectors of these bases.
+    """
+    diagonal = np.diag(projector)
+    mixed = np.flatnonzero((diagonal != 0.0) & (diagonal != 1.0))
+    values, vectors = np.linalg.eigh(projector[np.ix_(mixed, mixed)])
+    spread = np.zeros((len(mixed), len(projector)))
+    spread[:, mixed] = vectors.T
+    joints = np.eye(len(projector))
+    active = np.vstack([joints[diagonal == 1.0], spread[values > 0.5]])
+    return active, np.vstack([joints[diagonal == 0.0], spread[values <= 0.5]])
 
 
 def _cleaned(matrix: Array) -> Array:
