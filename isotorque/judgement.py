@@ -131,7 +131,13 @@ def _curves(run: RunOutcome) -> tuple[LearningCurve, ...]:
 def _model(run: RunOutcome) -> ModelJudgement | None:
     if run.scheme.learner is None:
         return None
-    targets = paper_targets(run.robot)
+    targets = [*paper_targets(run.robot)]
+    if run.scheme.domain is not None:
+        # most targets are unstable; their symmetric copies where the arm explored need not be
+        targets += [
+            TargetSet(f"{t.name}, copies in the BCTS explored", run.scheme.domain.fold(t.q).q)
+            for t in targets
+        ]
     # most learners only come near equivariance: that is measured, but nobody claims it
     claimed = run.options.learner in EQUIVARIANT_LEARNERS and run.scheme.group is not None
     judgement = verify_model(
@@ -169,7 +175,10 @@ def _level_sets(run: RunOutcome) -> LevelSetReport | None:
     """Show all configurations of the first target torque, for arms small enough to look at."""
     if not run.scheme.targets or run.robot.n > 3:
         return None
-    target = run.scheme.targets[0]
+    # of all torques held, the one nearest to 40 % of each range: far from folds, easy to read
+    _, held = run.scheme.samples
+    span = np.where(run.scheme.torque_range > 0, run.scheme.torque_range, 1.0)
+    target = held[int(np.argmin(np.abs(np.abs(held) / span - 0.4).max(axis=1)))]
     potential = run.gravity.potential.to_float()
     found = level_set(potential, target, group=run.group)
     curves: list[tuple[int, int, Array]] = []

@@ -19,6 +19,8 @@ IntMatrix = NDArray[np.int64]
 NEAR = 0.15
 """Offsets within this [rad] are candidates for one and the same group element."""
 MOST_THRESHOLDS = 64
+SAME_AS_EXACT = 1e-9
+"""A fitted offset this near to an exact one is that one [rad]."""
 
 
 def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list[SymmetryGroup]:
@@ -63,7 +65,8 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
     numeric = TrigonometricPolynomial(
         numeric.frequencies[order], numeric.cos[order], numeric.sin[order], numeric.names
     )
-    found: list[_Scored] = [_Scored(primary_symmetries(potential), 0.0)]
+    exact = primary_symmetries(potential)
+    found: list[_Scored] = [_Scored(exact, 0.0)]
     seen: set[tuple[bytes, ...]] = set()
     for threshold in _thresholds(numeric.amplitudes(), tolerance):
         support = Support.of(numeric, numeric.amplitudes() > threshold)
@@ -76,7 +79,7 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
         seen.add(signature)
         for members in _closed_subsets(candidates, numeric, tolerance):
             group, error = _group(numeric, [candidates[i] for i in members])
-            found.append(_Scored(group, error))
+            found.append(_Scored(_with_exact_members(group, exact), error))
     found.sort(key=lambda s: (-s.group.order, s.error))
     maximal: list[_Scored] = []
     for scored in found:
@@ -244,6 +247,15 @@ def _group(
         bound = np.minimum(residual_bound(potential, A, d, Y[i]), error)
         relations.append(SymmetryRelation(A, d, Y[i], support.B, identity, bound))
     return SymmetryGroup(relations), float(error.max(initial=0.0))
+
+
+def _with_exact_members(group: SymmetryGroup, exact: SymmetryGroup) -> SymmetryGroup:
+    """Replace relations that are in truth exact by their exact selves."""
+    if not np.array_equal(group.basis, exact.basis):
+        return group
+    return SymmetryGroup(
+        next((e for e in exact if e.exact and e.same_as(r, SAME_AS_EXACT)), r) for r in group
+    )
 
 
 def _contained(inner: SymmetryGroup, outer: SymmetryGroup) -> bool:
