@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from scipy.optimize import fsolve
 
 from symbolic.errors import InputError
@@ -16,7 +16,7 @@ from symbolic.relations import SymmetryRelation, wrap
 from symbolic.robots import load_robot
 from symbolic.symmetries import primary_symmetries
 from symbolic.trigonometric import TrigonometricPolynomial
-from verify.strategies import kinematic_trees
+from verify.strategies import kinematic_trees, known_arms
 
 
 def brute_force(g, n, rng):
@@ -73,7 +73,7 @@ def test_brute_force_finds_the_same_sets(name, order):
 
 
 @given(kinematic_trees(min_joints=2, max_joints=2))
-@settings(max_examples=10)
+@settings(max_examples=10, suppress_health_check=list(HealthCheck))  # most arms are too simple
 def test_brute_force_finds_nothing_more_on_random_arms(tree):
     potential = derive_potential(tree)
     group = primary_symmetries(potential)
@@ -149,6 +149,35 @@ def test_the_group_does_not_depend_on_scale_sign_or_order_of_terms(tree, other):
         again = primary_symmetries(changed)
         assert again.order == group.order
         assert all(r in group for r in again)
+
+
+def averaged(potential, group):
+    """Average random coefficients on the support over a group: what is planted is the group."""
+    K = potential.frequencies
+    index = {tuple(k): i for i, k in enumerate(K.tolist())}
+    rng = np.random.default_rng(len(K))
+    C = rng.normal(size=len(K)) + 1j * rng.normal(size=len(K))
+    total = np.zeros(len(K), dtype=complex)
+    for relation in group:
+        for i, k in enumerate(K):
+            target = k * relation.Y
+            s = 1 if np.allclose(k @ relation.A, target) else -1
+            np.testing.assert_allclose(k @ relation.A, s * target)
+            image = tuple((s * target).astype(int).tolist())
+            value = (
+                C[index[image]] if image in index else np.conj(C[index[tuple(-x for x in image)]])
+            )
+            total[i] += s * np.exp(-1j * (k @ relation.d)) * value
+    return TrigonometricPolynomial(K, 2 * total.real / len(group), -2 * total.imag / len(group))
+
+
+@given(known_arms(max_joints=4))
+def test_every_planted_symmetry_is_found(arm):
+    planted = averaged(arm.gravity.significant_potential, arm.group)
+    assume(len(planted) and planted.amplitudes().min() > 1e-6)
+    found = check_group(planted)
+    assume(np.array_equal(found.basis, arm.group.basis))
+    assert all(relation in found for relation in arm.group)
 
 
 def test_orders_known_from_the_theory():
