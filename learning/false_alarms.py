@@ -14,6 +14,8 @@ from symbolic.relations import wrap
 
 Array = NDArray[np.float64]
 
+MOST_ROW_ALARMS = -1.0
+"""Largest accepted decimal logarithm of the false alarms of a single row."""
 RING = 5.0
 """Pairs up to so many half widths off tell how dense near misses are."""
 
@@ -52,7 +54,7 @@ def accepted_relations(
     least_torques: int,
     hypotheses_per_row: int,
     *,
-    most_false_alarms: float = 1e-2,
+    most_false_alarms: float = 1e-3,
     significance: float = 1e-3,
 ) -> list[AcceptedRelation]:
     """Voted relations that hold across torques and that no better one explains.
@@ -141,7 +143,7 @@ def _row_stands_out(
     near_misses = ring.sum() / (RING - 1.0)
     chance = max(float(widths[row] / np.pi), near_misses / max(1, int(others.sum())))
     log_alarms = _log10_tail(pairs, others, min(chance, 1.0), torques, support)
-    return bool(log_alarms + np.log10(hypotheses) < 0.0)
+    return bool(log_alarms + np.log10(hypotheses) < MOST_ROW_ALARMS)
 
 
 def _log10_tail(

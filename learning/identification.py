@@ -28,6 +28,7 @@ SCREEN = 1e-9
 LARGEST_ERROR = 0.05
 """Relations are claimed if the data exclude larger RMS torque errors, relative to RMS torque."""
 BOUND_DEVIATIONS = 3.0
+"""Errors are stated at as small a chance as three standard errors of a normal variable."""
 
 
 def identify(
@@ -144,7 +145,9 @@ def claim(
     """
     rounded = snapped_offsets(best.group, best.offset_errors) if snap else None
     group = rounded or best.group
-    bound, rms = torque_uncertainty(fit, group, BOUND_DEVIATIONS)
+    chance = stats.norm.sf(BOUND_DEVIATIONS)
+    deviations = BOUND_DEVIATIONS if np.isinf(fit.freedom) else stats.t.isf(chance, fit.freedom)
+    bound, rms = torque_uncertainty(fit, group, float(deviations))
     n = bound.shape[1]
     size = fit.rms_torque()
     involved = group.basis.any(axis=0)

@@ -105,10 +105,14 @@ def search_pairs(
     def at_noise(sigma: float) -> PairSearch:
         tolerance = Tolerance(max(sigma, ROUNDING))
         accepted = _accepted(kinds, groups, tolerance, largest_entry)
-        group = _consistent_group(accepted, kinds, tolerance, groups.q.shape[1])
-        orbits = find_orbits(groups, group, tolerance)
-        refinement = refine_offsets(groups, group, orbits, ROUNDING)
-        return PairSearch(active, groups, kinds, accepted, refinement, tolerance)
+        while True:
+            group = _consistent_group(accepted, kinds, tolerance, groups.q.shape[1])
+            orbits = find_orbits(groups, group, tolerance)
+            refinement = refine_offsets(groups, group, orbits, ROUNDING)
+            lost = _lost(accepted, kinds, refinement.group, tolerance)
+            if not lost:
+                return PairSearch(active, groups, kinds, accepted, refinement, tolerance)
+            accepted = [relation for relation in accepted if relation not in lost]
 
     if noise is not None:
         return at_noise(noise.angle)
@@ -152,10 +156,7 @@ def _consistent_group(
         unit.astype(np.int64), unit[None], np.zeros((1, joints)), np.ones((1, joints))
     )
     for relation in found:
-        if any(
-            np.array_equal(relation.A, A) and (np.abs(wrap(relation.d - d)) < SAME_OFFSET).all()
-            for A, d in zip(group.A, group.d, strict=True)
-        ):
+        if _place(relation, group):
             continue  # known as a product, or contradicting one in Y
         larger = completed(
             CandidateGroup(
@@ -171,6 +172,24 @@ def _consistent_group(
         if support[1:].mean() >= PRODUCTS_SEEN * relation.torques:
             group = larger
     return group
+
+
+def _lost(
+    accepted: list[AcceptedRelation],
+    kinds: list[Pairs],
+    group: CandidateGroup,
+    tolerance: Tolerance,
+) -> list[AcceptedRelation]:
+    """Relations whose own pairs disagree with the offset they got in the group."""
+    support = supports(kinds, group, tolerance)
+    return [r for r in accepted if any(support[i] < LEAST_TORQUES for i in _place(r, group))]
+
+
+def _place(relation: AcceptedRelation, group: CandidateGroup) -> list[int]:
+    """Where a relation stands in a group (nowhere, or in one place)."""
+    match = (group.A == relation.A).all(axis=(1, 2))
+    match &= (np.abs(wrap(group.d - relation.d)) < SAME_OFFSET).all(axis=1)
+    return np.flatnonzero(match).tolist()
 
 
 def _require_enough(groups: TorqueGroups) -> None:

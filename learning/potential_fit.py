@@ -42,8 +42,6 @@ class FittedPotential:
         Degrees of freedom the noise level was estimated with; infinite where it was given.
     noise : MeasurementNoise
         Estimated or given noise levels.
-    torque_rms : (n,) array
-        Root mean square of the sampled torques [N m].
     samples : int
         Number of different samples used.
     """
@@ -53,7 +51,6 @@ class FittedPotential:
     root: Array
     freedom: float
     noise: MeasurementNoise
-    torque_rms: Array
     samples: int
 
     @property
@@ -157,21 +154,24 @@ def fit_potential(
     """
     q, tau = _different(q, tau)
     unknowns = 2 * len(frequencies)
-    freedom = tau.size - unknowns
-    touched = max(1, int(frequencies.any(axis=0).sum()))
-    least = -(-(unknowns + 1) // touched)
+    touched = frequencies.any(axis=0)  # the equations of other joints say 0 = 0
+    equations = int(touched.sum())
+    freedom = len(q) * equations - unknowns
+    least = -(-(unknowns + 1) // max(1, equations))
     if len(q) < least:
         raise Undetermined(
             f"{least - len(q)} more samples: {len(q)} different ones were given, "
             f"{least} determine {unknowns} coefficients and check them"
         )
+    offered, frequencies = frequencies, frequencies[:, touched]
+    q, tau = q[:, touched], tau[:, touched]
     features = torque_features(frequencies, q)
     largest = max(float(np.abs(tau).max()), 1e-300)
     start = solve(features.reshape(-1, unknowns), tau.ravel())
     if noise is not None:
         floor = MeasurementNoise(noise.angle, float(np.hypot(noise.torque, ROUNDING * largest)))
         estimate, root, _ = weighted_fit(q, tau, frequencies, start, floor)
-        return _result(frequencies, estimate, root, np.inf, floor, tau)
+        return FittedPotential(offered, estimate, root, np.inf, floor, len(q))
     stiffness = stiffness_matrices(frequencies, start, q)
     typical = max(float(np.sqrt(np.mean(stiffness**2))), 1e-300)
     best: tuple[float, Array, Array, MeasurementNoise] | None = None
@@ -185,7 +185,8 @@ def fit_potential(
             level = MeasurementNoise(size / typical, size * ratio)
             best = (deviance, estimate, root / size, level)
     assert best is not None
-    return _result(frequencies, best[1], best[2], float(freedom), best[3], tau)
+    _, estimate, root, level = best
+    return FittedPotential(offered, estimate, root, float(freedom), level, len(q))
 
 
 def present_frequencies(fit: FittedPotential, level: float) -> NDArray[np.bool_]:
@@ -207,18 +208,6 @@ def tail_probability(statistic: float, degrees: int, freedom: float) -> float:
     if np.isinf(freedom):
         return float(stats.chi2.sf(statistic, degrees))
     return float(stats.f.sf(statistic / degrees, degrees, freedom))
-
-
-def _result(
-    frequencies: Frequencies,
-    coefficients: Array,
-    root: Array,
-    freedom: float,
-    noise: MeasurementNoise,
-    tau: Array,
-) -> FittedPotential:
-    rms = np.sqrt(np.mean(tau**2, axis=0))
-    return FittedPotential(frequencies, coefficients, root, freedom, noise, rms, len(tau))
 
 
 def _different(q: Array, tau: Array) -> tuple[Array, Array]:

@@ -72,7 +72,7 @@ def depends_on_joint(
     joint: int,
     present: Frequencies,
     largest_error: float,
-    noise: MeasurementNoise | None,
+    noise: MeasurementNoise,
 ) -> bool:
     """Say whether the torque depends on a joint whose own torque was always zero.
 
@@ -86,7 +86,8 @@ def depends_on_joint(
         Frequencies of the potential found without it.
     largest_error : float
         Torque an undetected dependence may cause, RMS, relative to the RMS torque.
-    noise : MeasurementNoise, optional
+    noise : MeasurementNoise
+        Given or estimated without the joint; its own zero torques would feign precision.
 
     Returns
     -------
@@ -158,7 +159,7 @@ def silent_dependence(
             unmoved.append(joint)
             continue
         try:
-            dependent = depends_on_joint(q, tau, joint, present, largest_error, noise)
+            dependent = depends_on_joint(q, tau, joint, present, largest_error, noise or fit.noise)
         except Undetermined as lacking:
             raise Undetermined(
                 f"torque on joint {joint + 1}: it was zero in all samples, and they cannot tell "
