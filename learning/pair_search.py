@@ -21,6 +21,9 @@ from symbolic.relations import wrap
 Array = NDArray[np.float64]
 
 LEAST_TORQUES = 3
+"""Torques that a recording must have, and pairs must come from to show a relation."""
+LEAST_TORQUES_EXACT = 2
+"""The same for a single relation where angles are so exact that nothing agrees by chance."""
 SMALLEST_SHARE = 0.02
 SAME_TORQUE = 1e-6
 SIGMAS = (1e-8, 1e-6, 3e-5, 5e-4, 2e-3, 6e-3, 1.5e-2)
@@ -60,10 +63,20 @@ class PairSearch:
     tolerance: Tolerance
 
     @property
+    def least_torques(self) -> int:
+        """Distinct torques whose pairs must show a relation for it to count as observed."""
+        return least_torques(self.tolerance)
+
+    @property
     def saving(self) -> float:
         """Nats saved by describing the angles of an orbit by its base configuration and noise."""
         sigma = max(self.refinement.sigma, ROUNDING)
         return float(self.refinement.freedom * np.log(np.sqrt(2.0 * np.pi / np.e) / sigma))
+
+
+def least_torques(tolerance: Tolerance) -> int:
+    """Distinct torques whose pairs must show a relation."""
+    return LEAST_TORQUES_EXACT if tolerance.sigma <= UNMISTAKABLE else LEAST_TORQUES
 
 
 def search_pairs(
@@ -132,12 +145,11 @@ def _accepted(
     kinds: list[Pairs], groups: TorqueGroups, tolerance: Tolerance, largest_entry: int
 ) -> list[AcceptedRelation]:
     hypotheses = (2 * largest_entry + 1) ** groups.q.shape[1] - 1
+    least = least_torques(tolerance)
     accepted: list[AcceptedRelation] = []
     for pairs in kinds:
-        voted = voted_relations(pairs, groups.count, tolerance, LEAST_TORQUES, largest_entry)
-        accepted += accepted_relations(
-            pairs, voted, groups.count, tolerance, LEAST_TORQUES, hypotheses
-        )
+        voted = voted_relations(pairs, groups.count, tolerance, least, largest_entry)
+        accepted += accepted_relations(pairs, voted, groups.count, tolerance, least, hypotheses)
     accepted.sort(key=lambda relation: relation.log10_false_alarms)
     return accepted
 
@@ -181,8 +193,8 @@ def _lost(
     tolerance: Tolerance,
 ) -> list[AcceptedRelation]:
     """Relations whose own pairs disagree with the offset they got in the group."""
-    support = supports(kinds, group, tolerance)
-    return [r for r in accepted if any(support[i] < LEAST_TORQUES for i in _place(r, group))]
+    support, least = supports(kinds, group, tolerance), least_torques(tolerance)
+    return [r for r in accepted if any(support[i] < least for i in _place(r, group))]
 
 
 def _place(relation: AcceptedRelation, group: CandidateGroup) -> list[int]:

@@ -13,7 +13,7 @@ from learning.learned_symmetries import Knowledge, LearnedRelation, LearnedSymme
 from learning.lifting import lifted_relations
 from learning.offset_snapping import snapped_offsets
 from learning.pair_evidence import PairEvidence
-from learning.pair_search import LEAST_TORQUES, PairSearch, search_pairs
+from learning.pair_search import PairSearch, search_pairs
 from learning.samples import static_samples
 from symbolic.relations import SymmetryGroup, identity
 
@@ -109,7 +109,7 @@ def learned_from_pairs(found: PairSearch, snap: bool) -> LearnedSymmetries:
         learned.append(
             LearnedRelation(
                 relation,
-                Knowledge.OBSERVED if support >= LEAST_TORQUES else Knowledge.IMPLIED,
+                Knowledge.OBSERVED if support >= found.least_torques else Knowledge.IMPLIED,
                 support,
                 refinement.offset_errors[i],
                 evidence.p_value(i),

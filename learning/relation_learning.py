@@ -12,7 +12,7 @@ from learning.group_fit import SAME_OFFSET, CandidateGroup, fit_group
 from learning.identification import SIGNIFICANCE, claim, identify
 from learning.learned_symmetries import Knowledge, LearnedSymmetries
 from learning.pair_evidence import PairEvidence
-from learning.pair_search import LEAST_TORQUES, PairSearch, search_pairs
+from learning.pair_search import PairSearch, search_pairs
 from learning.pairing import learned_from_pairs, nothing_stands_out
 from learning.potential_fit import FittedPotential
 from learning.relation_group import Refinement, completed
@@ -56,7 +56,8 @@ def learn_relations(
     -------
     LearnedSymmetries
         Every relation says how it is known: *observed* in pairs of at least three distinct
-        torques, *implied by the group* of those, or *identified* through the fitted potential.
+        torques (two where the angles are exact), *implied by the group* of those, or *identified*
+        through the fitted potential.
         ``missing`` says what the data lack where something could not be decided;
         ``contradicted`` holds relations that pairs seem to show and the potential excludes.
 
@@ -218,7 +219,7 @@ def _with_evidence(
         paired_too = in_old_basis is not None and _among(in_old_basis, known)
         how = Knowledge.IDENTIFIED
         if paired_too:
-            how = Knowledge.OBSERVED if support >= LEAST_TORQUES else Knowledge.IMPLIED
+            how = Knowledge.OBSERVED if support >= pairs.least_torques else Knowledge.IMPLIED
         learned.append(
             dataclasses.replace(
                 relation,
