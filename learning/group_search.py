@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from learning.group_fit import CandidateGroup, GroupFit, fit_group
 from learning.potential_fit import FittedPotential
 from symbolic.relations import wrap
-from symbolic.symmetries import Support
+from symbolic.support import Support
 from symbolic.trigonometric import TrigonometricPolynomial
 
 Array = NDArray[np.float64]

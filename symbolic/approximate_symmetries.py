@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from symbolic.exact_symmetries import exact_symmetries, specialised
 from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
 from symbolic.residuals import residual_bound
 from symbolic.reynolds import joint_offsets, symmetric_part_error
-from symbolic.symmetries import Support, primary_symmetries, specialised
+from symbolic.support import Support
 from symbolic.trigonometric import TrigonometricPolynomial
 
 Array = NDArray[np.float64]
@@ -65,7 +66,7 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
     numeric = TrigonometricPolynomial(
         numeric.frequencies[order], numeric.cos[order], numeric.sin[order], numeric.names
     )
-    exact = primary_symmetries(potential)
+    exact = exact_symmetries(potential)
     found: list[_Scored] = [_Scored(exact, 0.0)]
     seen: set[tuple[bytes, ...]] = set()
     for threshold in _thresholds(numeric.amplitudes(), tolerance):

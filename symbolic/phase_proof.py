@@ -13,7 +13,7 @@ from symbolic.coefficients import is_zero
 from symbolic.trigonometric import TrigonometricPolynomial
 
 if TYPE_CHECKING:
-    from symbolic.symmetries import Support
+    from symbolic.support import Support
 
 Gauss = tuple[Any, Any]
 UNITS = ((1, 0), (0, 1), (-1, 0), (0, -1))
