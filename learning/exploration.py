@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.arm import Arm
-from learning.exploration_loop import Exploration, Learner, StaticTorques
+from learning.arm import Arm, Outcome
+from learning.exploration_loop import Exploration, Learner
 from learning.exploration_settings import ExplorationSettings
 from learning.exploration_step import Counts, ExplorationStep
 from learning.explored_share import ExploredShare
+from learning.static_projection import StaticTorques
 from learning.targets import DirectionTargets, Domain, GoalTargets, Target, TargetSource
+from symbolic.relations import wrap
 
 __all__ = [
     "ConstrainedDirectionSampling",
@@ -23,6 +25,8 @@ __all__ = [
     "ExplorationSettings",
     "ExplorationStep",
     "GoalBabbling",
+    "GuidedArm",
+    "GuidedDirectionSampling",
     "MotorBabbling",
 ]
 
@@ -68,13 +72,7 @@ class ConstrainedDirectionSampling(Exploration):
         )  # fmt: skip
 
     def _make_targets(self, home: Vector) -> TargetSource:
-        return DirectionTargets(
-            home,
-            self.settings.step_width,
-            self._weights,
-            self.settings.home_probability,
-            self._domain,
-        )
+        return _direction_targets(self, home)
 
 
 class DirectionSampling(Exploration):
@@ -86,13 +84,72 @@ class DirectionSampling(Exploration):
     """
 
     def _make_targets(self, home: Vector) -> TargetSource:
-        return DirectionTargets(
-            home,
-            self.settings.step_width,
-            self._weights,
-            self.settings.home_probability,
-            self._domain,
-        )
+        return _direction_targets(self, home)
+
+
+class GuidedArm(Arm, Protocol):
+    """An arm that can be placed and held from outside (``SimulatedArm`` in guided physics)."""
+
+    def place(self, q: Vector) -> None:
+        """Place the arm at rest at q (n,) [rad]."""
+        ...
+
+    def hold(self) -> Outcome:
+        """Measure the torque that holds the arm where it is."""
+        ...
+
+
+class GuidedDirectionSampling(Exploration):
+    """Direction sampling with an arm that is led from outside: every target is reached and held.
+
+    Parameters
+    ----------
+    arm : GuidedArm
+        The arm.
+    domain : Domain or None
+        Where targets may lie (the BCTS).
+    **options
+        As in ``Exploration``, by keyword; torques are measured, so there is neither noise nor a
+        set of static torques.
+
+    Notes
+    -----
+    For what an arm cannot hold by itself: with constant torques it settles in stable
+    configurations alone, and on the 3R arm four fifths of all orbits have none. A departure from
+    learning without a controller, and counted as such. Targets are wrapped to [-pi, pi].
+    """
+
+    def __init__(
+        self,
+        arm: GuidedArm,
+        learner: Learner,
+        rng: np.random.Generator,
+        *,
+        domain: Domain | None,
+        torque_range: Any,
+        settings: ExplorationSettings | None = None,
+        explored: ExploredShare | None = None,
+    ) -> None:
+        super().__init__(
+            arm, learner, rng, torque_range=torque_range, domain=domain, settings=settings,
+            explored=explored,
+        )  # fmt: skip
+        self._guided = arm
+
+    def _make_targets(self, home: Vector) -> TargetSource:
+        return _direction_targets(self, home)
+
+    def _hold_home(self) -> Outcome:
+        return self._guided.hold()
+
+    def _command(self, home: Vector) -> tuple[Target | None, Vector]:
+        assert self._targets is not None
+        return self._targets.next(self._rng), np.zeros(len(home))
+
+    def _execute(self, target: Target | None, torque: Vector) -> Outcome:
+        assert target is not None
+        self._guided.place(wrap(target.q))
+        return self._guided.hold()
 
 
 class GoalBabbling(Exploration):
@@ -169,3 +226,14 @@ class MotorBabbling(Exploration):
 
     def _command(self, home: Vector) -> tuple[Target | None, Vector]:
         return None, self._rng.uniform(-self._range, self._range)
+
+
+def _direction_targets(exploration: Exploration, home: Vector) -> DirectionTargets:
+    settings = exploration.settings
+    return DirectionTargets(
+        home,
+        settings.step_width,
+        exploration._weights,
+        settings.home_probability,
+        exploration._domain,
+    )

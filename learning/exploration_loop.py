@@ -14,6 +14,7 @@ from learning.exploration_settings import ExplorationSettings
 from learning.exploration_step import Counts, ExplorationStep
 from learning.exploratory_noise import ExploratoryNoise
 from learning.explored_share import ExploredShare
+from learning.static_projection import StaticTorques, nearest_admissible
 from learning.targets import Domain, Phase, Target, TargetSource
 from symbolic.errors import InputError
 from symbolic.relations import wrap
@@ -30,26 +31,6 @@ class Learner(Protocol):
 
     def predict(self, X: Any) -> Any:
         """Torques (m, n) [N m] for configurations (m, n) [rad]."""
-        ...
-
-
-class StaticTorques(Protocol):
-    """What exploration needs of the set of static torques (``StaticTorqueSet``)."""
-
-    def contains(self, torque: Any) -> Any:
-        """Whether the torque (n,) [N m] is admissible."""
-        ...
-
-    def nearest(self, torque: Any) -> Any:
-        """The nearest admissible torque (n,) [N m]."""
-        ...
-
-    def add(self, torque: Any) -> None:
-        """The torque (n,) [N m] held the arm."""
-        ...
-
-    def mark_inadmissible(self, torque: Any) -> None:
-        """The torque (n,) [N m] did not hold the arm."""
         ...
 
 
@@ -174,9 +155,15 @@ class Exploration:
         self._noise.step()
         return target, torque
 
+    def _hold_home(self) -> Outcome:
+        return self._arm.apply(self._home_torque.copy())
+
+    def _execute(self, target: Target | None, torque: Vector) -> Outcome:
+        return self._arm.apply(torque.copy())
+
     def _first_step(self) -> ExplorationStep:
         self._arm.go_home()
-        outcome = self._arm.apply(self._home_torque.copy())
+        outcome = self._hold_home()
         self.counts.commands += 1
         if not isinstance(outcome, Settled):
             raise InputError(
@@ -187,19 +174,17 @@ class Exploration:
         self.home = home
         self._learn(outcome, 1.0)
         return ExplorationStep(
-            0, Phase.START, home, self._home_torque, False, outcome, True, 1.0, np.nan, False,
+            0, Phase.START, home, outcome.torque, False, outcome, True, 1.0, np.nan, False,
             self._share(), self._end_of_window(),
         )  # fmt: skip
 
     def _step(self, home: Vector) -> ExplorationStep:
         target, torque = self._command(home)
-        torque = np.where(self._active, torque, 0.0)
-        projected = False
-        if self._static_torques is not None and not self._static_torques.contains(torque):
-            torque = np.asarray(self._static_torques.nearest(torque), dtype=float)
-            projected = True
-            self.counts.projected += 1
-        outcome = self._arm.apply(torque.copy())
+        wanted = np.where(self._active, torque, 0.0)
+        torque = nearest_admissible(self._static_torques, wanted, self.settings.to_boundary)
+        projected = torque is not wanted
+        self.counts.projected += projected
+        outcome = self._execute(target, torque)
         number = self.counts.commands
         self.counts.commands += 1
         settled = isinstance(outcome, Settled)

@@ -25,6 +25,10 @@ class ExplorationSettings:
         Probability of a visit home in every step.
     turn_angle : float
         phi: a direction ends when the arm moves more than this away from it [rad]; pi/2 is Eq. 15.
+    to_boundary : bool
+        A torque outside the set of static torques is replaced by the last admissible one on the
+        way to it from the nearest torque ever held, less a tenth of the way; False: by that
+        nearest held torque itself, which leaves the fringe of the set unexplored.
     joint_weights : tuple of float or None
         w of Eq. 13 where joints have different units; None: all 1.
     window : int
@@ -47,6 +51,7 @@ class ExplorationSettings:
     noise_drift: float = 0.3
     home_probability: float = 0.02
     turn_angle: float = np.pi / 2
+    to_boundary: bool = True
     joint_weights: tuple[float, ...] | None = None
     window: int = 100
     window_samples: int = 50

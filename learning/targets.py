@@ -178,7 +178,7 @@ class DirectionTargets:
         if not self._domain.contains(self._current):
             return 0.0
         inside, outside = 0.0, 1.0
-        for _ in range(12):
+        for _ in range(7):
             middle = 0.5 * (inside + outside)
             if self._domain.contains(self._current + middle * step):
                 inside = middle

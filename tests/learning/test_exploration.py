@@ -12,10 +12,12 @@ from learning.exploration import (
     DirectionSampling,
     ExplorationSettings,
     GoalBabbling,
+    GuidedDirectionSampling,
     MotorBabbling,
 )
 from learning.explored_share import ExploredShare
 from learning.learners.local_linear_map import LocalLinearMap
+from learning.learners.recursive_least_squares import RecursiveLeastSquares
 from learning.targets import Phase
 from symbolic.errors import InputError
 from tests.learning.learners import planar_arm
@@ -207,6 +209,29 @@ def test_limits_are_marked_and_not_learned():
     assert len(static_torques.marked) == 1
     assert np.linalg.norm(steps[2].target) == pytest.approx(0.1)
     assert exploration.counts.inadmissible == 1
+
+
+def test_guided_sampling_visits_every_target_and_measures_there():
+    """Placed and held: outcomes are the targets, labels the measured torques, nothing is lost."""
+
+    class Guided(planar_arm.IdealArm):
+        def place(self, q):
+            assert np.abs(q).max() <= np.pi
+            self.q = np.array(q)
+
+        def hold(self):
+            return Settled(self.q.copy(), planar_arm.torque(self.q)[0], 0.0)
+
+    learner = RecursiveLeastSquares(group=planar_arm.group())
+    exploration = GuidedDirectionSampling(
+        Guided(), learner, np.random.default_rng(0), domain=Cell(), torque_range=RANGE
+    )
+    steps = list(exploration.steps(100))
+    for step in steps[1:]:
+        assert np.abs(step.outcome.q - step.target).max() < 1e-12
+        assert Cell().contains(step.target)
+        assert not step.projected
+    assert rmse(learner) < 0.0053
 
 
 def test_home_visits_are_single_steps():
