@@ -5,8 +5,9 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from isotorque.experiment import RunOptions, run_experiment
+from isotorque.experiment import run_experiment
 from isotorque.judgement import judge_run
+from isotorque.run_options import RunOptions
 from verify.figures.style import to_svg
 from verify.report_figures import report_pictures
 

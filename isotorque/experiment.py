@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from isotorque.run_options import ArmOptions, RunOptions
 from learning.arm import OutcomeKind
 from learning.exploration_step import ExplorationStep
 from learning.learners.by_name import online_learner
@@ -22,7 +23,6 @@ from learning.recording_reader import RecordingReader
 from learning.run_info import RunInfo
 from learning.scheme import Discovery, Scheme, SchemeSettings
 from learning.simulation import SimulatedArm
-from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from symbolic.robots import Robot, load_robot
@@ -37,64 +37,6 @@ CURVE_POINTS = 40
 """Points of a learning curve."""
 DATABASE = "run.sqlite"
 DISCOVERING, LEARNING = "discovering symmetries", "learning the inverse statics"
-
-
-@dataclass(frozen=True)
-class ArmOptions:
-    """Which simulated arm, and with which randomness.
-
-    Attributes
-    ----------
-    seed : int
-        Seed of all random choices.
-    physics, engine, settle : str
-        Of the simulation.
-    snap : bool
-        Whether rounded angles in the robot file are snapped.
-    """
-
-    seed: int = 0
-    physics: str = "open_loop"
-    engine: str = "compiled"
-    settle: str = "finished"
-    snap: bool = True
-
-
-@dataclass(frozen=True)
-class RunOptions:
-    """What a run is made with; two runs with equal options are equal, bit for bit.
-
-    Attributes
-    ----------
-    robot : str
-        Built-in name or file.
-    arm : ArmOptions
-        The simulated arm.
-    n_min : int
-        Relations needed before learning begins.
-    samples : int
-        Torques commanded while learning.
-    learner : str
-        Name of the online learner.
-    symmetries : str
-        ``learned``, ``exact`` or ``none``.
-    """
-
-    robot: str
-    arm: ArmOptions = field(default_factory=ArmOptions)
-    n_min: int = 2
-    samples: int = 3000
-    learner: str = "local-linear-map-it"
-    symmetries: str = "learned"
-
-    def __post_init__(self) -> None:
-        if self.symmetries not in ("learned", "exact", "none"):
-            raise InputError("run", "--symmetries", self.symmetries, "learned, exact or none")
-        if self.samples < 1:
-            raise InputError("run", "--samples", self.samples, "at least 1")
-        if self.n_min < 1:
-            raise InputError("run", "--n-min", self.n_min, "at least 1")
-        online_learner(self.learner, None)
 
 
 @dataclass(frozen=True, eq=False)

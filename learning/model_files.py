@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import io
 import json
 import os
 import zipfile
+import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +24,9 @@ CLASSES = {
     "RecursiveLeastSquares": "learning.learners.recursive_least_squares",
 }
 """Learners that can be saved, and where they live."""
+_DAMAGE = (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error)
+# what zipfile and NumPy's header parser raise on flipped bits
+_NUMPY_DAMAGE = (NotImplementedError, RuntimeError, KeyError, SyntaxError, TypeError)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +129,10 @@ def load_model(path: str | Path) -> SavedModel:
 
 def _arrays(path: Path) -> dict[str, np.ndarray]:
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        # from memory: NumPy leaves a damaged file open
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
             return {name: archive[name] for name in archive.files}
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError) as error:
+    except (*_DAMAGE, *_NUMPY_DAMAGE) as error:
         raise InputError(path, "file", "missing or damaged", "the arrays of a model") from error
 
 

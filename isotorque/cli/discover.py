@@ -25,7 +25,8 @@ def discover(
     """
     from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.experiment import ArmOptions, RunOptions, discover_symmetries
+    from isotorque.experiment import discover_symmetries
+    from isotorque.run_options import ArmOptions, RunOptions
     from learning.arm import OutcomeKind
 
     arm = ArmOptions(seed, physics, engine, settle, not no_snap)

@@ -25,13 +25,8 @@ def learn(
     """Learn by Constrained Direction Sampling; goes on from a discovery in OUT, or makes one."""
     from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.experiment import (
-        ArmOptions,
-        RunOptions,
-        run_experiment,
-        save_run_model,
-        with_recorded_discovery,
-    )
+    from isotorque.experiment import run_experiment, save_run_model, with_recorded_discovery
+    from isotorque.run_options import ArmOptions, RunOptions
     from verify.models import verify_model
 
     arm = ArmOptions(seed, physics, engine, settle, not no_snap)

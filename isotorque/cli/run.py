@@ -28,8 +28,9 @@ def run(
     """
     from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.experiment import ArmOptions, RunOptions, run_experiment, save_run_model
+    from isotorque.experiment import run_experiment, save_run_model
     from isotorque.judgement import judge_run
+    from isotorque.run_options import ArmOptions, RunOptions
     from verify.report import write_report
 
     arm = ArmOptions(seed, physics, engine, settle, not no_snap)

@@ -1,0 +1,114 @@
+"""Saved models come back bit for bit, go on learning, and refuse what is damaged."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from learning.learners.by_name import ONLINE_LEARNERS, online_learner
+from learning.model_files import SavedModel, load_model, save_model
+from symbolic.errors import InputError
+from symbolic.relations import SymmetryRelation, close
+
+GROUP = close(
+    [
+        SymmetryRelation([[-1, 0], [2, 1]], [0, 0], [1, 1]),
+        SymmetryRelation(np.eye(2), [np.pi, 0], [-1, -1]),
+    ]
+)
+
+
+def samples(seed, count):
+    q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (count, 2))
+    lower = 6.0 * np.cos(q.sum(axis=1))
+    return q, np.stack([18.0 * np.cos(q[:, 0]) + lower, lower], axis=1)
+
+
+def saved(tmp_path, learner):
+    save_model(SavedModel(learner, "2r", "c0ffee", ("a", "b"), {"why": "test"}), tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", sorted(ONLINE_LEARNERS))
+@pytest.mark.parametrize("group", [None, GROUP], ids=["plain", "group"])
+def test_a_saved_model_predicts_and_goes_on_the_same(name, group, tmp_path):
+    learner = online_learner(name, group)
+    learner.partial_fit(*samples(1, 30))
+    back = load_model(saved(tmp_path, learner))
+    assert (back.robot, back.digest, back.joint_names) == ("2r", "c0ffee", ("a", "b"))
+    assert back.notes == {"why": "test"}
+    q, _ = samples(2, 50)
+    np.testing.assert_array_equal(back.learner.predict(q), learner.predict(q))
+    more = samples(3, 10)
+    np.testing.assert_array_equal(
+        back.learner.partial_fit(*more).predict(q), learner.partial_fit(*more).predict(q)
+    )
+
+
+def test_nothing_is_pickled(tmp_path):
+    learner = online_learner("recursive-least-squares", GROUP).partial_fit(*samples(1, 10))
+    saved(tmp_path, learner)
+    with np.load(tmp_path / "model.npz", allow_pickle=False) as arrays:
+        assert all(arrays[name].dtype != object for name in arrays.files)
+    json.loads((tmp_path / "model.json").read_text())
+
+
+def test_a_learner_that_cannot_be_saved_is_refused(tmp_path):
+    with pytest.raises(InputError, match="one of"):
+        save_model(SavedModel(object(), "2r", "", ("a",), {}), tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        (lambda d: d.pop("parameters"), "no saved model"),
+        (lambda d: d.update(schema=99), "schema"),
+        (lambda d: d.update(kind="Parrot"), "Parrot"),
+        (lambda d: d["parameters"].pop("state"), "damaged"),
+        (lambda d: d["parameters"]["settings"].update(no_such_setting=1), "damaged"),
+        (lambda d: d.pop("joints"), "damaged"),
+    ],
+)
+def test_damaged_documents_are_refused_by_name(change, word, tmp_path):
+    learner = online_learner("local-linear-map", None).partial_fit(*samples(1, 10))
+    saved(tmp_path, learner)
+    document = json.loads((tmp_path / "model.json").read_text())
+    change(document)
+    (tmp_path / "model.json").write_text(json.dumps(document))
+    with pytest.raises(InputError, match=word) as refused:
+        load_model(tmp_path / "model.json")
+    assert "model.json" in str(refused.value)
+
+
+@given(st.integers(0, 4000), st.integers(0, 255))
+@settings(max_examples=20)
+def test_damaged_arrays_never_pass_as_whole_without_an_error_or_the_same_arrays(
+    tmp_path_factory, place, byte
+):
+    folder = tmp_path_factory.mktemp("model")
+    learner = online_learner("local-linear-map", None).partial_fit(*samples(1, 10))
+    saved(folder, learner)
+    content = bytearray((folder / "model.npz").read_bytes())
+    place %= len(content)
+    content = (
+        content[:place] if byte % 2 else content[:place] + bytes([byte]) + content[place + 1 :]
+    )
+    (folder / "model.npz").write_bytes(content)
+    try:
+        back = load_model(folder)
+    except InputError:
+        return
+    q, _ = samples(2, 5)
+    np.testing.assert_array_equal(back.learner.predict(q), learner.predict(q))
+
+
+@pytest.mark.parametrize("name", ["model.json", "model.npz"])
+def test_a_missing_file_is_named(name, tmp_path):
+    learner = online_learner("local-linear-map", None).partial_fit(*samples(1, 10))
+    saved(tmp_path, learner)
+    (tmp_path / name).unlink()
+    with pytest.raises(InputError, match=name):
+        load_model(tmp_path)
