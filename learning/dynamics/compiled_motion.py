@@ -71,7 +71,8 @@ def move(plant, rest, q, v, torque, duration, scratch):
     acceleration_here(plant, v, applied, scratch)
     fastest = _largest(vectors[ACCELERATION])
     # The error of a first step from here is about a h^2 / 4.
-    h = min(FIRST_STEP, math.sqrt(2.0 * rest.tolerance / (fastest + 1e-9)))
+    h = math.sqrt(2.0 * rest.tolerance / (fastest + 1e-9))
+    h = max(SHORTEST_STEP, min(FIRST_STEP, h))
     quiet_since = -1.0
     if _largest(v) <= rest.velocity and fastest <= rest.acceleration:
         quiet_since = 0.0
@@ -86,11 +87,17 @@ def move(plant, rest, q, v, torque, duration, scratch):
         step = min(h, left)
         steps += 1
         error = try_step(plant, q, v, applied, step, scratch)
+        if not error < math.inf:
+            # Numbers overflow: the arm flies off.
+            if step <= SHORTEST_STEP:
+                return ELAPSED, duration, steps
+            h = max(SHORTEST_STEP, step * SHRINKAGE)
+            continue
         speed = max(_largest(v), _largest(vectors[V_NEXT]))
         allowed = min(rest.tolerance, max(rest.time_tolerance * speed, FLOOR * rest.tolerance))
         scale = math.sqrt(allowed / (error + 1e-300))
         if not error <= allowed and step > SHORTEST_STEP:
-            h = step * max(SHRINKAGE, SAFETY * scale)
+            h = max(SHORTEST_STEP, step * max(SHRINKAGE, SAFETY * scale))
             continue
         q_next = vectors[Q_NEXT]
         v_next = vectors[V_NEXT]
@@ -102,7 +109,8 @@ def move(plant, rest, q, v, torque, duration, scratch):
             q[i] = q_next[i]
             v[i] = v_next[i]
         t += step
-        grown = min(LONGEST_STEP, step * min(GROWTH, SAFETY * scale))
+        grown = step * min(GROWTH, SAFETY * scale)
+        grown = max(SHORTEST_STEP, min(LONGEST_STEP, grown))
         h = grown if step == h else max(h, grown)
         evaluate_here(plant, q, v, scratch)
         if _largest(v) <= rest.velocity:

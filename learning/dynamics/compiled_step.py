@@ -62,8 +62,8 @@ def try_step(plant, q, v, torque, h, scratch):
     Returns
     -------
     float
-        Estimated local error [rad] of the step before extrapolation. The state after the step
-        stands in ``scratch.vectors[Q_NEXT]`` and ``scratch.vectors[V_NEXT]``.
+        Estimated local error [rad] of the step before extrapolation, infinite where numbers
+        overflow. The state after the step stands in rows Q_NEXT and V_NEXT of the vectors.
 
     Notes
     -----
@@ -129,6 +129,7 @@ def try_step(plant, q, v, torque, h, scratch):
     v_half = vectors[V_HALF]
     v_end = vectors[V_END]
     error = 0.0
+    total = 0.0
     for i in range(n):
         q_full = q[i] + h * v_full[i]
         q_end = q[i] + 0.5 * h * (v_half[i] + v_end[i])
@@ -139,7 +140,8 @@ def try_step(plant, q, v, torque, h, scratch):
         vectors[V_NEXT, i] = 2.0 * v_end[i] - v_full[i] if smooth else v_end[i]
         if plant.dry and vectors[V_NEXT, i] * v_end[i] <= 0.0:
             vectors[V_NEXT, i] = v_end[i]
-    return error
+        total += vectors[Q_NEXT, i] + vectors[V_NEXT, i]
+    return error if math.isfinite(total) else math.inf
 
 
 @kernel

@@ -92,13 +92,15 @@ class PinocchioEngine:
         """Return the acceleration (n,) [rad/s^2] under a torque (n,)."""
         return self._stepper.acceleration(self.equations.terms(q, v), v, torque)
 
+    @np.errstate(over="ignore", invalid="ignore")
     def _move(self, q: Array, v: Array, torque: Array, duration: float, may_rest: bool) -> Motion:
         rule = self._rule
         stepper = self._stepper
         applied = torque + self._nudge
         terms = self.equations.terms(q, v)
         fastest = largest(stepper.acceleration(terms, v, applied))
-        h = min(FIRST_STEP, math.sqrt(2.0 * rule.tolerance / (fastest + 1e-9)))
+        h = math.sqrt(2.0 * rule.tolerance / (fastest + 1e-9))
+        h = max(SHORTEST_STEP, min(FIRST_STEP, h))
         quiet_since = None
         if may_rest and largest(v) <= rule.velocity and fastest <= rule.acceleration:
             quiet_since = 0.0
@@ -111,11 +113,17 @@ class PinocchioEngine:
             length = min(h, left)
             steps += 1
             step = stepper.try_step(terms, q, v, applied, length)
+            if not step.error < math.inf:
+                # Numbers overflow: the arm flies off.
+                if length <= SHORTEST_STEP:
+                    break
+                h = max(SHORTEST_STEP, length * SHRINKAGE)
+                continue
             speed = max(largest(v), largest(step.v))
             allowed = min(rule.tolerance, max(rule.time_tolerance * speed, FLOOR * rule.tolerance))
             scale = math.sqrt(allowed / (step.error + 1e-300))
             if not step.error <= allowed and length > SHORTEST_STEP:
-                h = length * max(SHRINKAGE, SAFETY * scale)
+                h = max(SHORTEST_STEP, length * max(SHRINKAGE, SAFETY * scale))
                 continue
             hit = first_crossing(self._limits, q, v, step.q, step.v, length)
             if hit is not None:
@@ -123,7 +131,8 @@ class PinocchioEngine:
                 return Motion(OutcomeKind.LIMIT, where, v, t + fraction * length, steps)
             q, v = step.q, step.v
             t += length
-            grown = min(LONGEST_STEP, length * min(GROWTH, SAFETY * scale))
+            grown = length * min(GROWTH, SAFETY * scale)
+            grown = max(SHORTEST_STEP, min(LONGEST_STEP, grown))
             h = grown if length == h else max(h, grown)
             terms = self.equations.terms(q, v)
             if not (may_rest and self._is_quiet(terms, v, applied)):

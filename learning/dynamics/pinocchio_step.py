@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +30,7 @@ class Step(NamedTuple):
     q, v : (n,) arrays
         State after it.
     error : float
-        Estimated local error before extrapolation [rad].
+        Estimated local error before extrapolation [rad], infinite where numbers overflow.
     """
 
     q: Array
@@ -85,6 +86,8 @@ class Stepper:
         dq = q_end - q_full
         dv = v_end - v_full
         error = max(largest(dq), VELOCITY_WEIGHT * largest(dv))
+        if not math.isfinite(sum(q_end.tolist()) + sum(v_end.tolist())):
+            error = math.inf
         if not self._dry:
             return Step(q_end + dq, v_end + dv, error)
         # A joint that stuck or turned round during the step has nothing to extrapolate.

@@ -119,3 +119,13 @@ def test_profiles_and_accelerations_agree():
     torque = np.array([1.0, 2.0, -1.0])
     ours = compiled.release_test(q, torque).acceleration
     assert np.allclose(ours, reference.release_test(q, torque).acceleration, atol=1e-9)
+
+
+@pytest.mark.parametrize("engine", ["compiled", "pinocchio"])
+def test_absurd_torques_end_too(engine):
+    arm = SimulatedArm(load_robot("2r"), engine=engine)
+    for size, kind in ((1e10, "limit"), (1e300, "timeout")):
+        outcome = arm.apply([size, -size])
+        assert outcome.kind == kind
+        assert np.isfinite(outcome.q).all()
+        assert np.array_equal(arm.q, arm.home)
