@@ -1,0 +1,235 @@
+"""Gaussian process whose functions all have a group's symmetries."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+from sklearn.base import RegressorMixin
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import ConstantKernel, Kernel, WhiteKernel
+
+from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
+from learning.learners.saved_learner import SavedLearner
+from learning.learners.symmetric_kernel import SymmetrisedPeriodicKernel
+from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from symbolic.errors import InputError
+
+Array = NDArray[np.float64]
+Joints = NDArray[np.int64]
+
+#: Rows of the covariance of queries and samples computed together, to bound memory.
+TOGETHER = 4_000_000
+#: Nugget, relative to the amplitude, that keeps noise-free covariances invertible.
+NUGGET = 1e-12
+#: Length scales [rad] from the best of which the search starts.
+LENGTHS = np.geomspace(0.25, 16.0, 13)
+
+
+class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
+    """scikit-learn's Gaussian process with `SymmetrisedPeriodicKernel`, exactly equivariant.
+
+    Parameters
+    ----------
+    noise : float or None
+        Standard deviation of the torques' errors [N m]; None: estimated with the other
+        hyperparameters.
+    length_scale : float or None
+        Length scale on the torus [rad]; None: the one of largest marginal likelihood.
+    restarts : int
+        Further random starts of that search.
+    group : SymmetryGroup or None
+        Relations to exploit.
+    random_state : int
+        Seed of these starts.
+
+    Attributes
+    ----------
+    processes_ : list of GaussianProcessRegressor
+        One for each set of joints that have the same signs under the group.
+
+    Notes
+    -----
+    Prefer it where samples are dear, the torque may be more than rigid gravity (springs, bending),
+    and it matters how sure the estimate is: ``predict`` gives standard deviations, which also say
+    where to sample next. Fitting costs the cube of the number of samples, so up to a thousand or
+    two; symmetric copies are in the kernel and add none. A symmetry that is not there is enforced
+    all the same. ``RecursiveLeastSquares`` learns one by one at nearly the same accuracy.
+
+    Examples
+    --------
+    >>> q = np.linspace(-3.0, 3.0, 12)[:, None]
+    >>> pendulum = SymmetricGaussianProcess(noise=0.0).fit(q, 5.0 * np.cos(q))
+    >>> mean, deviation = pendulum.predict(q + 0.2, return_std=True)
+    >>> bool(np.abs(mean - 5.0 * np.cos(q + 0.2)).max() < 1e-3), deviation.shape
+    (True, (12, 1))
+    """
+
+    def __init__(
+        self,
+        noise: float | None = 0.0,
+        *,
+        length_scale: float | None = None,
+        restarts: int = 0,
+        group: GroupArrays | None = None,
+        random_state: int = 0,
+    ) -> None:
+        self.noise = noise
+        self.length_scale = length_scale
+        self.restarts = restarts
+        self.group = group
+        self.random_state = random_state
+
+    def fit(self, X: Any, y: Any) -> SymmetricGaussianProcess:
+        """Fit to samples, forgetting what was before.
+
+        Parameters
+        ----------
+        X : (m, n) array_like
+            Configurations [rad].
+        y : (m, n) array_like
+            Torques that hold them [N m].
+
+        Returns
+        -------
+        SymmetricGaussianProcess
+            Itself.
+
+        Raises
+        ------
+        InputError
+            If a number is NaN or infinite, or a parameter of the learner is unusable.
+        """
+        self._check_parameters()
+        q, torque, _ = checked_samples(self, X, y, first=True)
+        self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
+        size = np.sqrt(np.mean(torque**2, axis=0))
+        self._scale = np.where(size > 1e-9 * size.max(initial=0.0), size, 1.0)
+        self._q, self._torque = q, torque
+        self._condition([None] * len(self._classes))
+        self.n_samples_seen_ = len(q)
+        return self
+
+    def predict(self, X: Any, return_std: bool = False) -> Any:
+        """Torques (m, n) [N m] estimated for configurations (m, n) [rad].
+
+        Parameters
+        ----------
+        X : (m, n) array_like
+            Configurations [rad].
+        return_std : bool
+            Whether to return standard deviations (m, n) [N m] beside.
+        """
+        fitted(self)
+        q = checked_configurations(self, X, first=False)
+        mean, deviation = np.empty((2, len(q), self.n_outputs_))
+        together = max(1, TOGETHER // len(self._q))
+        for process, joints in zip(self.processes_, self._classes, strict=True):
+            for i in range(0, len(q), together):
+                part = slice(i, i + together)
+                found = process.predict(q[part], return_std=return_std)
+                shape = (len(q[part]), len(joints))
+                if return_std:
+                    found, spread = found
+                    deviation[part, joints] = spread.reshape(shape)
+                mean[part, joints] = found.reshape(shape)
+        result = [mean * self._scale, deviation * self._scale]
+        if self._flat:
+            result = [x[:, 0] for x in result]
+        return tuple(result) if return_std else result[0]
+
+    def _condition(self, thetas: list[Array | None]) -> None:
+        """Condition each process on the samples; hyperparameters are sought where not given."""
+        self.processes_ = []
+        for joints, theta in zip(self._classes, thetas, strict=True):
+            kernel = self._kernel(joints)
+            if theta is not None:
+                kernel.theta = theta
+            process = GaussianProcessRegressor(
+                kernel,
+                alpha=self._variance(joints),
+                optimizer=_search(self._torque[:, joints].size) if theta is None else None,
+                n_restarts_optimizer=self.restarts,
+                random_state=self.random_state,
+            )
+            with warnings.catch_warnings():
+                # A hyperparameter at its bound (a torque that is zero, say) is no failure.
+                warnings.simplefilter("ignore", ConvergenceWarning)
+                process.fit(self._q, self._torque[:, joints] / self._scale[joints])
+            self.processes_.append(process)
+
+    def _kernel(self, joints: Joints) -> Kernel:
+        bounds = "fixed" if self.length_scale is not None else (0.05, 50.0)
+        periodic = SymmetrisedPeriodicKernel(
+            self._coordinates, int(joints[0]), self.length_scale or 2.0, bounds
+        )
+        kernel = ConstantKernel(1.0, (1e-12, 1e24)) * (periodic + WhiteKernel(NUGGET, "fixed"))
+        return kernel if self.noise is not None else kernel + WhiteKernel(1e-4, (1e-12, 1.0))
+
+    def _variance(self, joints: Joints) -> float:
+        noise = 0.0 if self.noise is None else self.noise
+        # scikit-learn wants it positive; the nugget is in the kernel.
+        return float(np.mean((noise / self._scale[joints]) ** 2)) + np.finfo(float).tiny
+
+    def _arrays(self) -> dict[str, NDArray]:
+        thetas = {f"theta_{i}": p.kernel_.theta for i, p in enumerate(self.processes_)}
+        return {"q": self._q, "torque": self._torque, "scale": self._scale, **thetas}
+
+    def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
+        self._q, self._torque, self._scale = arrays["q"], arrays["torque"], arrays["scale"]
+        self._condition([arrays[f"theta_{i}"] for i in range(len(self._classes))])
+
+    def _check_parameters(self) -> None:
+        require(self, "noise", self.noise is None or 0 <= self.noise < np.inf, "None or >= 0")
+        length = self.length_scale
+        require(self, "length_scale", length is None or 0 < length < np.inf, "None or > 0")
+        require(self, "restarts", self.restarts >= 0, "at least 0")
+
+    def _start(self, joints: int, outputs: int, flat: bool) -> None:
+        """Empty state for ``joints`` inputs and ``outputs`` outputs."""
+        if self.group is not None and outputs != joints:
+            raise InputError("y", "number of columns", outputs, f"{joints}, one torque per joint")
+        self._coordinates = SymmetryCoordinates.of(self.group, joints)
+        signs = self._coordinates.Y if outputs == joints else np.ones((1, outputs))
+        columns, member = np.unique(signs.T, axis=0, return_inverse=True)
+        self._classes = [np.flatnonzero(member.ravel() == c) for c in range(len(columns))]
+        self._flat = flat
+        self.n_outputs_ = outputs
+        self.n_samples_seen_ = 0
+
+
+def _search(numbers: int) -> Callable[..., tuple[Array, float]]:
+    """A search for hyperparameters, given how many numbers the process is to explain.
+
+    The gradient search of scikit-learn stays where it starts if the covariance there cannot be
+    inverted, or ends in a poor local optimum; so it starts from the best of some length scales,
+    each with its best amplitude: the objective is ``(Q / s + numbers log s) / 2 + ..`` in the
+    amplitude s, and its derivative by log s at s = 1 gives Q.
+    """
+
+    def search(objective: Callable[..., Any], theta: Array, bounds: Array) -> tuple[Array, float]:
+        best, least = np.array(theta), np.inf
+        lengths = np.log(LENGTHS) if len(theta) > 1 else [None]
+        for length in lengths:
+            trial = np.array(theta)
+            trial[0] = 0.0
+            if length is not None:
+                trial[1] = length
+            value, slope = objective(trial)
+            squares = numbers - 2 * slope[0]
+            if not np.isfinite(value) or squares <= 0:
+                continue
+            trial[0] = np.log(squares / numbers)
+            trial = np.clip(trial, bounds[:, 0], bounds[:, 1])
+            value = objective(trial, eval_gradient=False)
+            if value < least:
+                best, least = trial, value
+        found = minimize(objective, best, jac=True, method="L-BFGS-B", bounds=bounds)
+        return (found.x, found.fun) if found.fun < least else (best, least)
+
+    return search
