@@ -15,8 +15,8 @@ from learning.exploration_loop import Learner
 from learning.exploration_settings import ExplorationSettings
 from learning.exploration_step import ExplorationStep
 from learning.explored_share import ExploredShare
-from learning.identification import identify
 from learning.learned_symmetries import LearnedSymmetries
+from learning.relation_learning import learn_relations
 from learning.static_torques import StaticTorqueSet
 from symbolic.domain import FundamentalDomain
 from symbolic.errors import InputError
@@ -53,7 +53,7 @@ class SchemeSettings:
     discovery: DiscoverySettings = field(default_factory=DiscoverySettings)
     exploration: ExplorationSettings = field(default_factory=ExplorationSettings)
     n_min: int = 2
-    confirmations: int = 1
+    confirmations: int = 2
     max_targets: int = 12
     samples: int = 2000
 
@@ -215,7 +215,7 @@ class Scheme:
 
     def _gate(self) -> bool:
         """Learn the relations from all settled samples; say whether they suffice."""
-        self.learned = identify(*self.samples)
+        self.learned = learn_relations(*self.samples)
         order, missing = self.learned.order, self.learned.missing
         recent = [g.order for g in self.gates[-self.settings.confirmations :]]
         confirmed = len(recent) >= self.settings.confirmations and all(o == order for o in recent)
