@@ -22,10 +22,10 @@ from typing import Protocol
 import numpy as np
 
 from learning.arm import LimitHit, Outcome, Settled, TimedOut, Vector
-from learning.csv_data import write_csv
-from learning.recorded_arm import RecordedArm
-from learning.recording import Recording
-from learning.run_info import RunInfo
+from learning.recordings.csv_data import write_csv
+from learning.recordings.recorded_arm import RecordedArm
+from learning.recordings.recording import Recording
+from learning.recordings.run_info import RunInfo
 
 
 class Drive(Protocol):

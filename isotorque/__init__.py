@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from learning.discovery import discover as discover
     from learning.identification import identify as identify
     from learning.learners.local_linear_map import LocalLinearMap as LocalLinearMap
-    from learning.recording import Recording as Recording
+    from learning.recordings.recording import Recording as Recording
     from learning.scheme import Scheme as Scheme
     from learning.simulation import SimulatedArm as SimulatedArm
     from learning.static_torques import StaticTorqueSet as StaticTorqueSet
@@ -61,7 +61,7 @@ _HOME = {
     "Outcome": "learning.arm",
     "OutcomeKind": "learning.arm",
     "ProfileArm": "learning.arm",
-    "Recording": "learning.recording",
+    "Recording": "learning.recordings.recording",
     "Robot": "symbolic.robots",
     "Scheme": "learning.scheme",
     "Settled": "learning.arm",

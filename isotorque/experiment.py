@@ -17,10 +17,10 @@ from learning.arm import OutcomeKind
 from learning.exploration_step import ExplorationStep
 from learning.learners.by_name import online_learner
 from learning.model_files import SavedModel, save_model
-from learning.recorded_simulation import RecordedSimulation
-from learning.recording import Recording
-from learning.recording_reader import RecordingReader
-from learning.run_info import RunInfo
+from learning.recordings.recorded_simulation import RecordedSimulation
+from learning.recordings.recording import Recording
+from learning.recordings.recording_reader import RecordingReader
+from learning.recordings.run_info import RunInfo
 from learning.scheme import Discovery, Scheme, SchemeSettings
 from learning.simulation import SimulatedArm
 from symbolic.gravity import GravityModel

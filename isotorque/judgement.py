@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from isotorque.experiment import RunOutcome
 from isotorque.paper_targets import paper_targets
 from learning.learners.by_name import EQUIVARIANT_LEARNERS
-from learning.run_info import software_versions
+from learning.recordings.run_info import software_versions
 from symbolic.level_curves import level_curves
 from symbolic.level_sets import level_set
 from verify.figures.learning_curves import LearningCurve

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from learning.run_info import software_versions
+from learning.recordings.run_info import software_versions
 from symbolic.errors import InputError
 
 SCHEMA = 1

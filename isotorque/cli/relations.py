@@ -24,7 +24,7 @@ def relations(
     from isotorque.cli.files import write_whole
     from isotorque.cli.output import plain
     from isotorque.experiment import DATABASE
-    from learning.recording_reader import RecordingReader
+    from learning.recordings.recording_reader import RecordingReader
     from learning.relation_learning import learn_relations
     from verify.relation_files import relations_document
 

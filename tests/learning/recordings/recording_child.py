@@ -2,7 +2,7 @@
 
 Tells on standard output how far it has come.
 
-    python -m tests.learning.recording_child RUN.sqlite RESULT STEPS
+    python -m tests.learning.recordings.recording_child RUN.sqlite RESULT STEPS
 """
 
 import hashlib
@@ -10,10 +10,10 @@ import itertools
 import sys
 from pathlib import Path
 
-from learning.recorded_arm import RecordedArm
-from learning.recording import Recording
-from learning.run_info import RunInfo
-from tests.learning.recording_tools import NAMES, ToyArm, explore
+from learning.recordings.recorded_arm import RecordedArm
+from learning.recordings.recording import Recording
+from learning.recordings.run_info import RunInfo
+from tests.learning.recordings.recording_tools import NAMES, ToyArm, explore
 
 
 def main(path: Path, result: Path, steps: int) -> None:

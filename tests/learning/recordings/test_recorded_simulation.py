@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from learning.physics import MeasurementNoise
-from learning.recorded_command import CommandKind
-from learning.recorded_simulation import RecordedSimulation
-from learning.recording import Recording
-from learning.recording_reader import RecordingReader
-from learning.run_info import RunInfo
+from learning.recordings.recorded_command import CommandKind
+from learning.recordings.recorded_simulation import RecordedSimulation
+from learning.recordings.recording import Recording
+from learning.recordings.recording_reader import RecordingReader
+from learning.recordings.run_info import RunInfo
 from learning.simulation import SimulatedArm
 from symbolic.errors import InputError
 from symbolic.robots import load_robot
-from tests.learning.recording_tools import tables
+from tests.learning.recordings.recording_tools import tables
 
 NOISE = MeasurementNoise(angle=1e-3, torque=1e-2, encoder_step=1e-4, holding_torque=5e-3)
 

@@ -10,13 +10,13 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from learning.arm import Outcome, Vector
-from learning.commit_log import CommitLog, Statement
-from learning.recorded_checkpoint import Checkpoint, pack_arrays
-from learning.recorded_command import CommandKind, Row, row_of
-from learning.recording_error import clear_errors
-from learning.recording_file import check_before_writing, part_statement, write_new_file
-from learning.recording_lock import WriterLock
-from learning.recording_queries import (
+from learning.recordings.commit_log import CommitLog, Statement
+from learning.recordings.recorded_checkpoint import Checkpoint, pack_arrays
+from learning.recordings.recorded_command import CommandKind, Row, row_of
+from learning.recordings.recording_error import clear_errors
+from learning.recordings.recording_file import check_before_writing, part_statement, write_new_file
+from learning.recordings.recording_lock import WriterLock
+from learning.recordings.recording_queries import (
     RecordedPart,
     read_checkpoint,
     read_motion,
@@ -24,8 +24,8 @@ from learning.recording_queries import (
     read_rows,
     read_state,
 )
-from learning.recording_reader import RecordingReader
-from learning.recording_schema import (
+from learning.recordings.recording_reader import RecordingReader
+from learning.recordings.recording_schema import (
     CHECKPOINT,
     COMMAND,
     MOTION,
@@ -34,7 +34,7 @@ from learning.recording_schema import (
     checked,
     command_id,
 )
-from learning.run_info import RunInfo, canonical_json, software_versions
+from learning.recordings.run_info import RunInfo, canonical_json, software_versions
 
 REPLAY_CHUNK = 4096
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from learning.arm import Arm, ProfileArm, Settled
-from learning.recorded_arm import RecordedArm
-from learning.recording import Recording
-from learning.recording_error import RecordingError
-from learning.recording_reader import RecordingReader
+from learning.recordings.recorded_arm import RecordedArm
+from learning.recordings.recording import Recording
+from learning.recordings.recording_error import RecordingError
+from learning.recordings.recording_reader import RecordingReader
 from symbolic.errors import InputError
-from tests.learning.recording_tools import INFO, ToyArm
+from tests.learning.recordings.recording_tools import INFO, ToyArm
 
 
 class Hardware:

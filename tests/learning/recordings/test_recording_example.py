@@ -5,8 +5,8 @@ import pytest
 
 from examples.own_hardware import BenchPendulum, TorqueDrivenArm, main
 from learning.arm import Arm, OutcomeKind
-from learning.csv_data import read_csv
-from learning.recording_reader import RecordingReader
+from learning.recordings.csv_data import read_csv
+from learning.recordings.recording_reader import RecordingReader
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from learning.arm import Outcome, Playback
-from learning.recorded_checkpoint import Checkpoint, unpack_arrays
-from learning.recorded_command import Row, outcome_in, to_array
-from learning.recording_schema import command_id
-from learning.run_info import RunInfo
+from learning.recordings.recorded_checkpoint import Checkpoint, unpack_arrays
+from learning.recordings.recorded_command import Row, outcome_in, to_array
+from learning.recordings.recording_schema import command_id
+from learning.recordings.run_info import RunInfo
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.run_info import RunInfo, generator_state, software_versions
+from learning.recordings.run_info import RunInfo, generator_state, software_versions
 from symbolic.errors import InputError
 
 PLAIN = st.recursive(

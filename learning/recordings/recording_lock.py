@@ -6,7 +6,7 @@ import fcntl
 import os
 from pathlib import Path
 
-from learning.recording_error import RecordingError
+from learning.recordings.recording_error import RecordingError
 
 
 class WriterLock:

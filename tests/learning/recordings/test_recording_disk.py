@@ -13,15 +13,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.commit_log import CommitLog
-from learning.recorded_arm import RecordedArm
-from learning.recording import Recording
-from learning.recording_error import RecordingError, translated
-from learning.recording_reader import RecordingReader
-from learning.run_info import RunInfo
-from tests.learning.recording_tools import INFO, NAMES, ToyArm, explore, tables
+from learning.recordings.commit_log import CommitLog
+from learning.recordings.recorded_arm import RecordedArm
+from learning.recordings.recording import Recording
+from learning.recordings.recording_error import RecordingError, translated
+from learning.recordings.recording_reader import RecordingReader
+from learning.recordings.run_info import RunInfo
+from tests.learning.recordings.recording_tools import INFO, NAMES, ToyArm, explore, tables
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 COMMANDS = ["apply", "apply", "play", "home"] * 100
 
 
@@ -60,7 +60,7 @@ def test_a_process_that_may_not_write_more(tmp_path, whole):
     path = tmp_path / "run.sqlite"
     script = (
         "import sys; from pathlib import Path\n"
-        "from tests.learning.test_recording_disk import resumed\n"
+        "from tests.learning.recordings.test_recording_disk import resumed\n"
         "resumed(Path(sys.argv[1]))\n"
     )
 
@@ -86,8 +86,8 @@ def test_a_process_that_may_not_write_more(tmp_path, whole):
 def test_a_disk_too_full_for_a_new_file_leaves_nothing_behind(tmp_path):
     script = (
         "import sys; from pathlib import Path\n"
-        "from learning.recording import Recording\n"
-        "from tests.learning.recording_tools import INFO\n"
+        "from learning.recordings.recording import Recording\n"
+        "from tests.learning.recordings.recording_tools import INFO\n"
         "Recording.create(Path(sys.argv[1]), INFO)\n"
     )
     child = subprocess.run(

@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from learning.csv_data import StaticSamples, read_csv, write_csv
-from learning.recorded_arm import RecordedArm
-from learning.recorded_data import record_samples
-from learning.recording import Recording
-from learning.recording_error import RecordingError
-from learning.recording_reader import RecordingReader
+from learning.recordings.csv_data import StaticSamples, read_csv, write_csv
+from learning.recordings.recorded_arm import RecordedArm
+from learning.recordings.recorded_data import record_samples
+from learning.recordings.recording import Recording
+from learning.recordings.recording_error import RecordingError
+from learning.recordings.recording_reader import RecordingReader
 from symbolic.errors import InputError
-from tests.learning.recording_tools import INFO, ToyArm, files
+from tests.learning.recordings.recording_tools import INFO, ToyArm, files
 
 DATA = dataclasses.replace(INFO, part="data", physics="measured", engine="none", seed=None)
 

@@ -8,14 +8,21 @@ from pathlib import Path
 
 import pytest
 
-from learning.recording_reader import RecordingReader
-from tests.learning.recording_tools import files, tables
+from learning.recordings.recording_reader import RecordingReader
+from tests.learning.recordings.recording_tools import files, tables
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def start(path, result, steps):
-    arguments = [sys.executable, "-m", "tests.learning.recording_child", path, result, str(steps)]
+    arguments = [
+        sys.executable,
+        "-m",
+        "tests.learning.recordings.recording_child",
+        path,
+        result,
+        str(steps),
+    ]
     return subprocess.Popen(arguments, cwd=ROOT, stdout=subprocess.PIPE, text=True)
 
 

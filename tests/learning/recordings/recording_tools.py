@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from learning.arm import LimitHit, Outcome, Playback, Settled, TimedOut, Vector
-from learning.run_info import RunInfo, generator_state
+from learning.recordings.run_info import RunInfo, generator_state
 
 NAMES = ("shoulder", "elbow")
 INFO = RunInfo("toy", "0123abcd", NAMES, seed=1, options={"steps": 40})

@@ -12,15 +12,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.recorded_arm import RecordedArm
-from learning.recording import Recording
-from learning.recording_error import RecordingError
-from learning.recording_reader import RecordingReader
-from learning.recording_schema import SCHEMA_VERSION
+from learning.recordings.recorded_arm import RecordedArm
+from learning.recordings.recording import Recording
+from learning.recordings.recording_error import RecordingError
+from learning.recordings.recording_reader import RecordingReader
+from learning.recordings.recording_schema import SCHEMA_VERSION
 from symbolic.errors import InputError
-from tests.learning.recording_tools import INFO, ToyArm, explore, files, tables
+from tests.learning.recordings.recording_tools import INFO, ToyArm, explore, files, tables
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def record(path, steps=12, info=INFO):
@@ -78,9 +78,9 @@ def test_the_log_of_a_killed_run_is_left_too(tmp_path):
     path = tmp_path / "run.sqlite"
     script = (
         "import os, sys; from pathlib import Path\n"
-        "from learning.recorded_arm import RecordedArm\n"
-        "from learning.recording import Recording\n"
-        "from tests.learning.recording_tools import INFO, ToyArm\n"
+        "from learning.recordings.recorded_arm import RecordedArm\n"
+        "from learning.recordings.recording import Recording\n"
+        "from tests.learning.recordings.recording_tools import INFO, ToyArm\n"
         "arm = RecordedArm(ToyArm(), Recording.create(Path(sys.argv[1]), INFO))\n"
         "arm.apply([0.5, 0.25]); os._exit(9)\n"
     )
@@ -213,8 +213,8 @@ def test_a_second_writer_in_another_process(tmp_path):
     path = tmp_path / "run.sqlite"
     script = (
         "import sys; from pathlib import Path\n"
-        "from learning.recording import Recording\n"
-        "from tests.learning.recording_tools import INFO\n"
+        "from learning.recordings.recording import Recording\n"
+        "from tests.learning.recordings.recording_tools import INFO\n"
         "Recording.open(Path(sys.argv[1]), INFO)\n"
     )
     command = [sys.executable, "-c", script, path]

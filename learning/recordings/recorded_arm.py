@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from learning.arm import Arm, Outcome, OutcomeKind, Playback, Vector
-from learning.recorded_command import (
+from learning.recordings.recorded_command import (
     CommandKind,
     Row,
     outcome_in,
@@ -20,9 +20,9 @@ from learning.recorded_command import (
     to_array,
     to_bytes,
 )
-from learning.recording import Recording
-from learning.recording_error import RecordingError
-from learning.recording_queries import playback_of
+from learning.recordings.recording import Recording
+from learning.recordings.recording_error import RecordingError
+from learning.recordings.recording_queries import playback_of
 from symbolic.errors import InputError
 
 
@@ -78,7 +78,7 @@ class RecordedArm:
     >>> import tempfile
     >>> from pathlib import Path
     >>> from learning.arm import Settled
-    >>> from learning.run_info import RunInfo
+    >>> from learning.recordings.run_info import RunInfo
     >>> class Spring:
     ...     q = np.zeros(1)
     ...

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from learning.arm import OutcomeKind
-from learning.recorded_arm import RecordedArm
-from learning.recording import Recording
-from learning.recording_error import RecordingError
-from learning.recording_reader import RecordingReader
-from learning.run_info import RunInfo
-from tests.learning.recording_tools import INFO, ToyArm, explore, files, tables
+from learning.recordings.recorded_arm import RecordedArm
+from learning.recordings.recording import Recording
+from learning.recordings.recording_error import RecordingError
+from learning.recordings.recording_reader import RecordingReader
+from learning.recordings.run_info import RunInfo
+from tests.learning.recordings.recording_tools import INFO, ToyArm, explore, files, tables
 
 COMMANDS = st.lists(st.sampled_from(["apply", "apply", "apply", "play", "home"]), max_size=25)
 

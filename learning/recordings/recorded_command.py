@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from learning.arm import LimitHit, Outcome, OutcomeKind, Settled, TimedOut, Vector
-from learning.recording_schema import checksum, command_id
+from learning.recordings.recording_schema import checksum, command_id
 
 FLOATS = np.dtype("<f8")
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from learning.arm import Outcome
-from learning.recorded_arm import RecordedArm
-from learning.recorded_command import CommandKind, Row, outcome_in, to_array, to_bytes
+from learning.recordings.recorded_arm import RecordedArm
+from learning.recordings.recorded_command import CommandKind, Row, outcome_in, to_array, to_bytes
 from learning.simulation_results import Hold, Release
 
 
@@ -22,8 +22,8 @@ class RecordedSimulation(RecordedArm):
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from learning.recording import Recording
-    >>> from learning.run_info import RunInfo
+    >>> from learning.recordings.recording import Recording
+    >>> from learning.recordings.run_info import RunInfo
     >>> from learning.simulation import SimulatedArm
     >>> from symbolic.robots import load_robot
     >>> robot = load_robot("2r")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from learning.commit_log import Statement
-from learning.recording_check import check_content
-from learning.recording_error import RecordingError
-from learning.recording_queries import RecordedPart, read_parts, read_robot
-from learning.recording_schema import PART, ROBOT, checked, connect, create_tables
-from learning.run_info import RunInfo, canonical_json
+from learning.recordings.commit_log import Statement
+from learning.recordings.recording_check import check_content
+from learning.recordings.recording_error import RecordingError
+from learning.recordings.recording_queries import RecordedPart, read_parts, read_robot
+from learning.recordings.recording_schema import PART, ROBOT, checked, connect, create_tables
+from learning.recordings.run_info import RunInfo, canonical_json
 
 
 def part_statement(part: RecordedPart) -> Statement:

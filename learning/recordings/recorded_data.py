@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from learning.arm import Settled
-from learning.csv_data import StaticSamples
-from learning.recorded_command import CommandKind, row_of, to_bytes
-from learning.recording import Recording
-from learning.recording_error import RecordingError
+from learning.recordings.csv_data import StaticSamples
+from learning.recordings.recorded_command import CommandKind, row_of, to_bytes
+from learning.recordings.recording import Recording
+from learning.recordings.recording_error import RecordingError
 from symbolic.errors import InputError
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from learning.csv_data import StaticSamples, read_csv, write_csv
+from learning.recordings.csv_data import StaticSamples, read_csv, write_csv
 from symbolic.errors import InputError
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
