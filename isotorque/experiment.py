@@ -17,6 +17,7 @@ from learning.arm import OutcomeKind
 from learning.exploration_step import ExplorationStep
 from learning.learners.by_name import online_learner
 from learning.model_files import SavedModel, save_model
+from learning.physics import MeasurementNoise
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
 from learning.recordings.recording_reader import RecordingReader
@@ -36,6 +37,8 @@ Progress = Callable[[str, int, int, str], None]
 CURVE_POINTS = 40
 """Points of a learning curve."""
 DATABASE = "run.sqlite"
+SENSORS = 100
+"""Generators of sensors are numbered from here on."""
 DISCOVERING, LEARNING = "discovering symmetries", "learning the inverse statics"
 
 
@@ -118,7 +121,7 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
     with _timed(clock, "derivation"):
         gravity = GravityModel(robot)
         group = primary_symmetries(gravity.potential)
-    arm = _arm(robot, options.arm)
+    arm = simulated_arm(robot, options.arm, 0)
     info = _info(robot, arm, options.arm, "discover", {"n_min": options.n_min})
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
@@ -155,7 +158,7 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
         Called as ``progress(stage, done, total, note)``.
     """
     options = result.options
-    arm = _arm(result.robot, options.arm)
+    arm = simulated_arm(result.robot, options.arm, 1)
     chosen = {k: getattr(options, k) for k in ("samples", "learner", "symmetries")}
     info = _info(result.robot, arm, options.arm, "learn", chosen)
     with (
@@ -222,9 +225,16 @@ def _generator(options: ArmOptions, stage: int) -> np.random.Generator:
     return np.random.default_rng(np.random.SeedSequence(options.seed, spawn_key=(stage,)))
 
 
-def _arm(robot: Robot, options: ArmOptions) -> SimulatedArm:
+def simulated_arm(robot: Robot, options: ArmOptions, stage: int) -> SimulatedArm:
+    """Return the arm of a stage; its sensors have a generator of their own."""
+    noise = MeasurementNoise(options.angle_noise, options.torque_noise, options.encoder_step)
     return SimulatedArm(
-        robot, physics=options.physics, engine=options.engine, settle=options.settle
+        robot,
+        physics=options.physics,
+        engine=options.engine,
+        settle=options.settle,
+        noise=noise,
+        rng=_generator(options, SENSORS + stage) if noise.is_random else None,
     )
 
 

@@ -77,6 +77,12 @@ def _setup(run: RunOutcome) -> RunSetup:
     command += ["--symmetries", options.symmetries, "--n-min", str(options.n_min)]
     command += ["--physics", options.arm.physics, "--engine", options.arm.engine]
     command += ["--settle", options.arm.settle] + ([] if options.arm.snap else ["--no-snap"])
+    for option, value in (
+        ("--angle-noise", options.arm.angle_noise),
+        ("--torque-noise", options.arm.torque_noise),
+        ("--encoder-step", options.arm.encoder_step),
+    ):
+        command += [option, str(value)] if value else []
     return RunSetup(
         robot=run.robot.name,
         digest=run.robot.digest,

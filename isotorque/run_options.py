@@ -20,6 +20,9 @@ class ArmOptions:
         Of the simulation.
     snap : bool
         Whether rounded angles in the robot file are snapped.
+    angle_noise, torque_noise, encoder_step : float
+        Errors of the sensors: standard deviations [rad], [N m], and the step that angles are
+        rounded to [rad].
     """
 
     seed: int = 0
@@ -27,6 +30,9 @@ class ArmOptions:
     engine: str = "compiled"
     settle: str = "finished"
     snap: bool = True
+    angle_noise: float = 0.0
+    torque_noise: float = 0.0
+    encoder_step: float = 0.0
 
 
 @dataclass(frozen=True)

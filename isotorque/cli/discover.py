@@ -2,7 +2,20 @@
 
 from __future__ import annotations
 
-from isotorque.cli.options import Engine, Json, NoSnap, Out, Physics, Quiet, RobotName, Seed, Settle
+from isotorque.cli.options import (
+    AngleNoise,
+    EncoderStep,
+    Engine,
+    Json,
+    NoSnap,
+    Out,
+    Physics,
+    Quiet,
+    RobotName,
+    Seed,
+    Settle,
+    TorqueNoise,
+)
 from isotorque.cli.output import emit_json, row
 from isotorque.cli.run_options import NMin
 
@@ -16,6 +29,9 @@ def discover(
     settle: Settle = "finished",
     seed: Seed = 0,
     no_snap: NoSnap = False,
+    angle_noise: AngleNoise = 0.0,
+    torque_noise: TorqueNoise = 0.0,
+    encoder_step: EncoderStep = 0.0,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -29,7 +45,9 @@ def discover(
     from isotorque.run_options import ArmOptions, RunOptions
     from learning.arm import OutcomeKind
 
-    arm = ArmOptions(seed, physics, engine, settle, not no_snap)
+    arm = ArmOptions(
+        seed, physics, engine, settle, not no_snap, angle_noise, torque_noise, encoder_step
+    )
     options = RunOptions(robot, arm, n_min)
     output_directory(out)
     with progress_bars(quiet) as progress:

@@ -37,6 +37,15 @@ Settle = Annotated[
         "--settle", metavar="MODE", help="finished: at the equilibrium; raw: at the criterion."
     ),
 ]
+AngleNoise = Annotated[
+    float, typer.Option("--angle-noise", metavar="RAD", help="Noise of measured angles.")
+]
+TorqueNoise = Annotated[
+    float, typer.Option("--torque-noise", metavar="NM", help="Noise of measured torques.")
+]
+EncoderStep = Annotated[
+    float, typer.Option("--encoder-step", metavar="RAD", help="Measured angles are rounded to it.")
+]
 Out = Annotated[Path, typer.Option("--out", help="Directory for all results.", show_default=False)]
 
 

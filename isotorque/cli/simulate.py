@@ -6,7 +6,20 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Engine, Json, NoSnap, Physics, Quiet, RobotName, Settle, numbers
+from isotorque.cli.options import (
+    AngleNoise,
+    EncoderStep,
+    Engine,
+    Json,
+    NoSnap,
+    Physics,
+    Quiet,
+    RobotName,
+    Seed,
+    Settle,
+    TorqueNoise,
+    numbers,
+)
 from isotorque.cli.output import emit_json, row
 
 
@@ -25,18 +38,33 @@ def simulate(
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
     settle: Settle = "finished",
+    seed: Seed = 0,
     no_snap: NoSnap = False,
+    angle_noise: AngleNoise = 0.0,
+    torque_noise: TorqueNoise = 0.0,
+    encoder_step: EncoderStep = 0.0,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Apply a constant torque and wait until the arm settles, hits a limit or time is up."""
+    import numpy as np
+
+    from learning.physics import MeasurementNoise
     from learning.simulation import SimulatedArm
     from symbolic.robots import load_robot
 
     loaded = load_robot(robot, snap=not no_snap)
     tau = numbers(torque, "--torque", loaded.n)
     q0 = None if start is None else numbers(start, "--from", loaded.n)
-    arm = SimulatedArm(loaded, physics=physics, engine=engine, settle=settle, q0=q0)
+    arm = SimulatedArm(
+        loaded,
+        physics=physics,
+        engine=engine,
+        settle=settle,
+        noise=MeasurementNoise(angle_noise, torque_noise, encoder_step),
+        rng=np.random.default_rng(seed),
+        q0=q0,
+    )
     outcome = arm.apply(tau)
     if json:
         emit_json(
