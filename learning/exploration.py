@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.arm import Arm, Outcome
+from learning.exploration_cell import ExplorationCell
 from learning.exploration_loop import Exploration, Learner
 from learning.exploration_settings import ExplorationSettings
 from learning.exploration_step import Counts, ExplorationStep
@@ -230,10 +231,9 @@ class MotorBabbling(Exploration):
 
 def _direction_targets(exploration: Exploration, home: Vector) -> DirectionTargets:
     settings = exploration.settings
+    domain: Any = exploration._domain
+    if hasattr(domain, "halfspaces"):
+        domain = ExplorationCell(domain)
     return DirectionTargets(
-        home,
-        settings.step_width,
-        exploration._weights,
-        settings.home_probability,
-        exploration._domain,
+        home, settings.step_width, exploration._weights, settings.home_probability, domain
     )

@@ -19,6 +19,8 @@ Vector = NDArray[np.float64]
 TRIES = 50
 #: A step that must be shortened below this share to stay in the domain is not worth taking.
 LEAST_SHARE = 0.1
+#: Steps of the search for the boundary of a domain that only says what it contains.
+BISECTIONS = 7
 
 
 class Phase(StrEnum):
@@ -106,9 +108,10 @@ class DirectionTargets:
 
     Notes
     -----
-    A target that would leave the domain ends the direction. The last step is shortened to the
-    boundary, so that targets reach up to it; then a new direction is drawn. Eq. 13 prints
-    ``|w^T dq|`` where the norm ``|w * dq|`` is meant.
+    A target that would leave the domain ends the direction. It is moved to the nearest point of
+    the domain (``ExplorationCell``; along the step where the domain cannot tell), so that targets
+    reach the boundary and its corners; then a new direction is drawn. Eq. 13 prints ``|w^T dq|``
+    where the norm ``|w * dq|`` is meant.
     """
 
     def __init__(
@@ -146,11 +149,10 @@ class DirectionTargets:
         for _ in range(TRIES):
             if self._direction is None:
                 self._direction = self._draw(rng)
-            share = self._share_inside(self._direction)
-            if share > LEAST_SHARE:
-                step = share * self._direction
+            step, inside = self._inside(self._direction)
+            if np.linalg.norm(self._weights * step) > LEAST_SHARE * self._step_width:
                 self._current = self._current + step
-                if share < 1.0:
+                if not inside:
                     self._direction = None
                 return Target(self._current, step, Phase.DIRECTION)
             self._direction = None
@@ -171,20 +173,24 @@ class DirectionTargets:
         length = np.linalg.norm(self._weights * direction)
         return np.asarray(self._step_width / length * direction)
 
-    def _share_inside(self, step: Vector) -> float:
-        """Largest share of the step that ends inside the (convex) domain, by bisection."""
-        if self._domain is None or self._domain.contains(self._current + step):
-            return 1.0
-        if not self._domain.contains(self._current):
-            return 0.0
+    def _inside(self, step: Vector) -> tuple[Vector, bool]:
+        """The step, or what remains of it within the domain; whether it is whole."""
+        domain = self._domain
+        if domain is None or domain.contains(self._current + step):
+            return step, True
+        nearest = getattr(domain, "nearest", None)
+        if nearest is not None:
+            return np.asarray(nearest(self._current + step) - self._current), False
+        if not domain.contains(self._current):
+            return np.zeros_like(step), False
         inside, outside = 0.0, 1.0
-        for _ in range(7):
+        for _ in range(BISECTIONS):
             middle = 0.5 * (inside + outside)
-            if self._domain.contains(self._current + middle * step):
+            if domain.contains(self._current + middle * step):
                 inside = middle
             else:
                 outside = middle
-        return inside
+        return inside * step, False
 
 
 class GoalTargets:
