@@ -99,12 +99,13 @@ def accepted_relations(
     accepted = []
     for relation in voted:
         widths = tolerance.half_widths(relation.A)
-        miss = np.abs(wrap(pairs.q_s - pairs.q_r @ relation.A.T - relation.d)) / widths
+        residual = wrap(pairs.q_s - pairs.q_r @ relation.A.T - relation.d)
+        miss = np.abs(residual) / widths
         inliers = relation.inliers & free
         support = len(np.unique(pairs.torque[inliers]))
         if support < least_torques or inliers.sum() < 0.5 * relation.inliers.sum():
             continue
-        p_value = _residual_p_value(relation, miss[inliers] * tolerance.deviations)
+        p_value = _residual_p_value(relation, residual[inliers] / tolerance.sigma)
         if p_value < significance:
             continue
         rows = len(relation.A)
@@ -161,11 +162,13 @@ def _log10_tail(
 
 
 def _residual_p_value(relation: VotedRelation, scaled: Array) -> float:
-    """Chi-square test of residuals in units of their standard deviation, too large only."""
+    """Chi-square test of residuals in units of an angle's deviation, too large only."""
     n = len(relation.A)
+    covariance = np.eye(n) + relation.A @ relation.A.T
+    squares = float((scaled * np.linalg.solve(covariance, scaled.T).T).sum())
     involution = (np.eye(n) == relation.A @ relation.A).all()
     independent = 0.5 if involution else 1.0  # then every pair counts forwards and backwards
     degrees = n * (independent * len(scaled) - 1.0)
     if degrees <= 0.0:
         return 1.0
-    return float(stats.chi2.sf(independent * float((scaled**2).sum()), degrees))
+    return float(stats.chi2.sf(independent * squares, degrees))

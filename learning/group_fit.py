@@ -73,8 +73,10 @@ class CandidateGroup:
             defects[match] = defect[match]
         return table, defects
 
-    def composed(self) -> CandidateGroup | None:
+    def composed(self, tolerance: float = SAME_OFFSET) -> CandidateGroup | None:
         """Same relations with offsets that obey the composition law, or None if not closed.
+
+        `tolerance` is how far the given offsets may miss it [rad].
 
         Notes
         -----
@@ -82,7 +84,7 @@ class CandidateGroup:
         errors of the offsets are averaged over the group, which is the joint refinement under
         d_ij = A_i d_j + d_i.
         """
-        table, defects = self.products()
+        table, defects = self.products(tolerance)
         if (table < 0).any():
             return None
         return CandidateGroup(self.basis, self.A, wrap(self.d - defects.mean(axis=1)), self.Y)

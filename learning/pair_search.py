@@ -30,6 +30,9 @@ SIGMAS = (1e-8, 1e-6, 3e-5, 5e-4, 2e-3, 6e-3, 1.5e-2)
 """Noise levels of an angle that are tried where none is given [rad]."""
 PRODUCTS_SEEN = 0.4
 """Mean support of all relations of a group, relative to that of the last one added."""
+MISSED_DEVIATIONS, MISSED_ROUNDING = 25.0, 1e-5
+"""Products of relations may miss their offset by so many standard deviations of an angle, but
+rounding alone [rad] makes up for the smallest."""
 UNMISTAKABLE = 1e-5
 """Below this noise [rad] pairs do not obey a relation by chance: no larger noise is tried."""
 ROUNDING = 1e-9
@@ -176,7 +179,8 @@ def _consistent_group(
                 np.concatenate([group.A, relation.A[None].astype(float)]),
                 np.concatenate([group.d, relation.d[None]]),
                 np.concatenate([group.Y, relation.Y[None]]),
-            )
+            ),
+            min(SAME_OFFSET, max(MISSED_ROUNDING, MISSED_DEVIATIONS * tolerance.sigma)),
         )
         if larger is None:
             continue

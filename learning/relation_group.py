@@ -18,8 +18,15 @@ Index = NDArray[np.int64]
 MAX_ORDER = 256
 
 
-def completed(group: CandidateGroup) -> CandidateGroup | None:
+def completed(group: CandidateGroup, same: float = SAME_OFFSET) -> CandidateGroup | None:
     """Add all products.
+
+    Parameters
+    ----------
+    group : CandidateGroup
+        Some relations.
+    same : float
+        Offsets that differ by less are estimates of one [rad].
 
     Returns
     -------
@@ -44,7 +51,7 @@ def completed(group: CandidateGroup) -> CandidateGroup | None:
         flips = group.Y * Y[position]
         for linear, offset, signs in zip(products, shifts, flips, strict=True):
             alike = (linear == A).all(axis=(1, 2))
-            alike &= (np.abs(wrap(d - offset)) < SAME_OFFSET).all(axis=1)
+            alike &= (np.abs(wrap(d - offset)) < same).all(axis=1)
             if (Y[alike] != signs).any():
                 return None
             if not alike.any():
@@ -54,7 +61,7 @@ def completed(group: CandidateGroup) -> CandidateGroup | None:
                 if len(A) > MAX_ORDER:
                     return None
         position += 1
-    return CandidateGroup(group.basis, A, d, Y).composed()
+    return CandidateGroup(group.basis, A, d, Y).composed(same)
 
 
 @dataclass(frozen=True, eq=False)

@@ -88,9 +88,10 @@ def learn_relations(
     """
     configurations, torques = static_samples(q, tau)
     identified = identify(configurations, torques, noise=noise, snap=snap)
-    fit = identified.fit
     try:
-        pairs = search_pairs(configurations, torques, _noise_of_pairs(noise, fit), largest_entry)
+        pairs = search_pairs(
+            configurations, torques, _noise_of_pairs(noise, identified), largest_entry
+        )
     except Undetermined as lacking:
         if identified.order > 1 or identified.missing is None:
             return identified
@@ -104,13 +105,12 @@ def learn_relations(
 
 
 def _noise_of_pairs(
-    noise: MeasurementNoise | None, fit: FittedPotential | None
+    noise: MeasurementNoise | None, identified: LearnedSymmetries
 ) -> MeasurementNoise | None:
-    """Noise that pairing shall allow for; the fit has estimated that of the angles."""
-    if noise is not None:
+    """Noise that pairing shall allow for: given, or estimated by a potential that fits."""
+    fit = identified.fit
+    if noise is not None or fit is None or identified.order == 1 or fit.freedom < FREEDOM:
         return noise
-    if fit is None or fit.freedom < FREEDOM:
-        return None
     return MeasurementNoise(max(fit.noise.angle, LEAST_ANGLE_NOISE), 0.0)
 
 
