@@ -168,7 +168,7 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
         periodic = SymmetrisedPeriodicKernel(
             self._coordinates, int(joints[0]), self.length_scale or 2.0, bounds
         )
-        kernel = ConstantKernel(1.0, (1e-12, 1e24)) * (periodic + WhiteKernel(NUGGET, "fixed"))
+        kernel = ConstantKernel(1.0, (1e-12, 1e10)) * (periodic + WhiteKernel(NUGGET, "fixed"))
         return kernel if self.noise is not None else kernel + WhiteKernel(1e-4, (1e-12, 1.0))
 
     def _variance(self, joints: Joints) -> float:
