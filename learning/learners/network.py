@@ -77,7 +77,8 @@ class FeedForwardNetwork(RegressorMixin, SavedLearner):
 
     Of the modes, ``averaged`` is most accurate and cheapest to fit; its evaluation costs ``order``
     passes. ``canonical`` costs one pass, but may jump at the faces of the domain. ``augmented`` is
-    the paper's recipe; it is the mode for symmetries that hold only roughly.
+    the paper's recipe; it is the mode for symmetries that hold only roughly, and on the 2R arm it
+    is better than ``averaged`` where samples give fewer equations than there are weights.
 
     Starts that fit soon also generalise best: choosing among 16 after 30 steps gave the 3R arm
     (65 samples, 18 units) errors of 4 to 18 mN m over four lattices and two seeds each; choosing
