@@ -17,9 +17,8 @@ def test_exact_pairs_give_the_relation_back(arm, seed):
     found = regress_relation(q_r, q_s, relation.A, relation.d)
     np.testing.assert_allclose(found.A, relation.A, atol=1e-9)
     np.testing.assert_allclose(wrap(found.d - relation.d), 0.0, atol=1e-9)
-    np.testing.assert_allclose(found.M @ q_r[0] + found.N @ q_s[0] - found.d,
-                               wrap(relation.configuration(q_r[0])) - relation.configuration(q_r[0]),
-                               atol=1e-8)  # fmt: skip
+    paper_form = q_r @ found.M.T + q_s @ found.N.T - found.d
+    np.testing.assert_allclose(wrap(paper_form), 0.0, atol=1e-8)
     assert found.pairs == n + 5
 
 
