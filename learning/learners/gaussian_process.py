@@ -21,7 +21,6 @@ from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
-Joints = NDArray[np.int64]
 
 #: Rows of the covariance of queries and samples computed together, to bound memory.
 TOGETHER = 4_000_000
@@ -51,7 +50,8 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
     Attributes
     ----------
     processes_ : list of GaussianProcessRegressor
-        One for each set of joints that have the same signs under the group.
+        One for each joint, with hyperparameters of its own: the torque of a wrist is rougher
+        than that of a shoulder, and one length scale for both fits neither.
 
     Notes
     -----
@@ -111,7 +111,7 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
         size = np.sqrt(np.mean(torque**2, axis=0))
         self._scale = np.where(size > 1e-9 * size.max(initial=0.0), size, 1.0)
         self._q, self._torque = q, torque
-        self._condition([None] * len(self._classes))
+        self._condition([None] * self.n_outputs_)
         self.n_samples_seen_ = len(q)
         return self
 
@@ -129,15 +129,13 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
         q = checked_configurations(self, X, first=False)
         mean, deviation = np.empty((2, len(q), self.n_outputs_))
         together = max(1, TOGETHER // len(self._q))
-        for process, joints in zip(self.processes_, self._classes, strict=True):
+        for joint, process in enumerate(self.processes_):
             for i in range(0, len(q), together):
                 part = slice(i, i + together)
-                found = process.predict(q[part], return_std=return_std)
-                shape = (len(q[part]), len(joints))
                 if return_std:
-                    found, spread = found
-                    deviation[part, joints] = spread.reshape(shape)
-                mean[part, joints] = found.reshape(shape)
+                    mean[part, joint], deviation[part, joint] = process.predict(q[part], True)
+                else:
+                    mean[part, joint] = process.predict(q[part])
         result = [mean * self._scale, deviation * self._scale]
         if self._flat:
             result = [x[:, 0] for x in result]
@@ -146,35 +144,35 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
     def _condition(self, thetas: list[Array | None]) -> None:
         """Condition each process on the samples; hyperparameters are sought where not given."""
         self.processes_ = []
-        for joints, theta in zip(self._classes, thetas, strict=True):
-            kernel = self._kernel(joints)
+        for joint, theta in enumerate(thetas):
+            kernel = self._kernel(joint)
             if theta is not None:
                 kernel.theta = theta
             process = GaussianProcessRegressor(
                 kernel,
-                alpha=self._variance(joints),
-                optimizer=_search(self._torque[:, joints].size) if theta is None else None,
+                alpha=self._variance(joint),
+                optimizer=_search(len(self._q)) if theta is None else None,
                 n_restarts_optimizer=self.restarts,
                 random_state=self.random_state,
             )
             with warnings.catch_warnings():
                 # A hyperparameter at its bound (a torque that is zero, say) is no failure.
                 warnings.simplefilter("ignore", ConvergenceWarning)
-                process.fit(self._q, self._torque[:, joints] / self._scale[joints])
+                process.fit(self._q, self._torque[:, joint] / self._scale[joint])
             self.processes_.append(process)
 
-    def _kernel(self, joints: Joints) -> Kernel:
+    def _kernel(self, joint: int) -> Kernel:
         bounds = "fixed" if self.length_scale is not None else (0.05, 50.0)
         periodic = SymmetrisedPeriodicKernel(
-            self._coordinates, int(joints[0]), self.length_scale or 2.0, bounds
+            self._coordinates, joint, self.length_scale or 2.0, bounds
         )
         kernel = ConstantKernel(1.0, (1e-12, 1e10)) * (periodic + WhiteKernel(NUGGET, "fixed"))
         return kernel if self.noise is not None else kernel + WhiteKernel(1e-4, (1e-12, 1.0))
 
-    def _variance(self, joints: Joints) -> float:
+    def _variance(self, joint: int) -> float:
         noise = 0.0 if self.noise is None else self.noise
         # scikit-learn wants it positive; the nugget is in the kernel.
-        return float(np.mean((noise / self._scale[joints]) ** 2)) + np.finfo(float).tiny
+        return float((noise / self._scale[joint]) ** 2) + np.finfo(float).tiny
 
     def _arrays(self) -> dict[str, NDArray]:
         thetas = {f"theta_{i}": p.kernel_.theta for i, p in enumerate(self.processes_)}
@@ -182,7 +180,7 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
 
     def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
         self._q, self._torque, self._scale = arrays["q"], arrays["torque"], arrays["scale"]
-        self._condition([arrays[f"theta_{i}"] for i in range(len(self._classes))])
+        self._condition([arrays[f"theta_{i}"] for i in range(self.n_outputs_)])
 
     def _check_parameters(self) -> None:
         require(self, "noise", self.noise is None or 0 <= self.noise < np.inf, "None or >= 0")
@@ -195,9 +193,6 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
         if self.group is not None and outputs != joints:
             raise InputError("y", "number of columns", outputs, f"{joints}, one torque per joint")
         self._coordinates = SymmetryCoordinates.of(self.group, joints)
-        signs = self._coordinates.Y if outputs == joints else np.ones((1, outputs))
-        columns, member = np.unique(signs.T, axis=0, return_inverse=True)
-        self._classes = [np.flatnonzero(member.ravel() == c) for c in range(len(columns))]
         self._flat = flat
         self.n_outputs_ = outputs
         self.n_samples_seen_ = 0
