@@ -65,6 +65,7 @@ def equal_errors(rows: list[Row]) -> list[dict[str, Any]]:
             if len(needed) < 2 or any(n is None for n in needed["exact"]):
                 continue
             pairs = list(zip(needed["exact"], needed["none"], strict=True))
+            reached = [b for _, b in pairs if b is not None]
             ratios = [b / a for a, b in pairs if a is not None and b is not None]
             result.append(
                 {
@@ -72,7 +73,7 @@ def equal_errors(rows: list[Row]) -> list[dict[str, Any]]:
                     "learner": learner,
                     "error": error,
                     "exact": statistics.median(n for n in needed["exact"] if n is not None),
-                    "none": statistics.median([b for _, b in pairs if b] or [np.nan]),
+                    "none": statistics.median(reached) if reached else None,
                     "ratio": ratios if len(ratios) == len(pairs) else None,
                     "exact_at_most": all(n == first["exact"] for n in needed["exact"]),
                     "none_at_most": all(n == first["none"] for n in needed["none"]),
