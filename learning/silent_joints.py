@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from learning.errors_in_variables import MeasurementNoise, Undetermined
 from learning.potential_fit import (
     FittedPotential,
-    Frequencies,
     all_frequencies,
     fit_potential,
     present_frequencies,
@@ -70,7 +69,7 @@ def depends_on_joint(
     q: Array,
     tau: Array,
     joint: int,
-    present: Frequencies,
+    fit: FittedPotential,
     largest_error: float,
     noise: MeasurementNoise,
 ) -> bool:
@@ -82,8 +81,8 @@ def depends_on_joint(
         Samples [rad], [N m].
     joint : int
         The joint in question.
-    present : (m, n) int array
-        Frequencies of the potential found without it.
+    fit : FittedPotential
+        Potential fitted without it.
     largest_error : float
         Torque an undetected dependence may cause, RMS, relative to the RMS torque.
     noise : MeasurementNoise
@@ -101,22 +100,27 @@ def depends_on_joint(
 
     Notes
     -----
-    The potential is fitted again with the frequencies e_j and k, k + e_j, k - e_j for all present
-    k. A joint that acts on the torque does so through one of them.
+    The potential is fitted again with more frequencies: e_j, and k + e_j, k - e_j for all present
+    k. A joint that acts on the torque does so through one of them. Where the samples do not
+    suffice for all old frequencies beside the new ones, only the present old ones are kept.
     """
+    present = fit.frequencies[present_frequencies(fit, LEVEL)]
     unit = np.zeros(q.shape[1], dtype=np.int64)
     unit[joint] = 1
-    wider = np.concatenate([present, unit[None], present + unit, present - unit])
-    fit = fit_potential(q, tau, wider, noise)
-    new = wider[:, joint] != 0
-    if (present_frequencies(fit, LEVEL) & new).any():
+    new = np.concatenate([unit[None], present + unit, present - unit])
+    try:
+        wider = fit_potential(q, tau, np.concatenate([fit.frequencies, new]), noise)
+    except Undetermined:
+        wider = fit_potential(q, tau, np.concatenate([present, new]), noise)
+    added = wider.frequencies[:, joint] != 0
+    if (present_frequencies(wider, LEVEL) & added).any():
         return True
-    m = len(wider)
-    error = np.hypot(fit.standard_error[:m], fit.standard_error[m:])[new]
-    doubt = np.sqrt(0.5 * (3.0 * error) ** 2 @ wider[new].astype(float) ** 2).max()
+    m = len(added)
+    error = np.hypot(wider.standard_error[:m], wider.standard_error[m:])[added]
+    doubt = np.sqrt(0.5 * (3.0 * error) ** 2 @ wider.frequencies[added].astype(float) ** 2).max()
     excess = float(doubt / (largest_error * np.sqrt(np.mean(tau**2))))
     if excess > 1.0:
-        more = int(np.ceil(fit.samples * (excess**2 - 1.0)))
+        more = int(np.ceil(wider.samples * (excess**2 - 1.0)))
         raise Undetermined(
             f"about {more} more samples: whether the torque depends on joint {joint + 1}, whose "
             "own torque was always zero, is lost in the noise"
@@ -152,14 +156,13 @@ def silent_dependence(
     Undetermined
         See `depends_on_joint`.
     """
-    present = fit.frequencies[present_frequencies(fit, LEVEL)]
     involved, unmoved = [], []
     for joint in np.flatnonzero(~active).tolist():
         if never_moved(q, joint, noise):
             unmoved.append(joint)
             continue
         try:
-            dependent = depends_on_joint(q, tau, joint, present, largest_error, noise or fit.noise)
+            dependent = depends_on_joint(q, tau, joint, fit, largest_error, noise or fit.noise)
         except Undetermined as lacking:
             raise Undetermined(
                 f"torque on joint {joint + 1}: it was zero in all samples, and they cannot tell "
