@@ -7,87 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.potential_fit import FittedPotential, Frequencies, tail_probability
+from learning.candidate_group import CandidateGroup, Ints
+from learning.potential_fit import FittedPotential, tail_probability
+from learning.pull_back import PullBacks
 from symbolic.relations import wrap
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
-SAME_OFFSET = 0.3
-"""Offsets of one A and Y that differ by less [rad] are estimates of one offset."""
-
-
-@dataclass(frozen=True, eq=False)
-class CandidateGroup:
-    """Relations y -> A y + d in y = B q coordinates that may form a group.
-
-    Attributes
-    ----------
-    basis : (r, n) int array
-        B.
-    A : (G, r, r) array
-        Linear parts.
-    d : (G, r) array
-        Offsets [rad], exact or estimated.
-    Y : (G, n) array
-        Torque signs.
-    """
-
-    basis: Ints
-    A: Array
-    d: Array
-    Y: Array
-
-    def __len__(self) -> int:
-        """Order."""
-        return len(self.Y)
-
-    def take(self, keep: NDArray[np.bool_] | NDArray[np.intp]) -> CandidateGroup:
-        """Some of the relations."""
-        return CandidateGroup(self.basis, self.A[keep], self.d[keep], self.Y[keep])
-
-    def is_identity(self) -> NDArray[np.bool_]:
-        """Which of the relations are the identity, shape (G,)."""
-        near = np.abs(wrap(self.d)).max(axis=1, initial=0.0) < SAME_OFFSET
-        linear = (np.abs(self.A - np.eye(self.d.shape[1])) < 1e-6).all(axis=(1, 2))
-        return near & linear & (self.Y == 1.0).all(axis=1)
-
-    def products(self, tolerance: float = SAME_OFFSET) -> tuple[NDArray[np.intp], Array]:
-        """Multiplication table (G, G), -1 where a product is missing, and its defects.
-
-        The defect of (i, j), shape (G, G, r), is A_i d_j + d_i - d_ij [rad]: how far the estimated
-        offsets miss the composition law.
-        """
-        A = np.einsum("gij,hjk->ghik", self.A, self.A)
-        d = np.einsum("gij,hj->ghi", self.A, self.d) + self.d[:, None]
-        Y = self.Y[:, None] * self.Y[None]
-        table = np.full((len(self), len(self)), -1, dtype=np.intp)
-        defects = np.zeros(d.shape)
-        nearest = np.full(table.shape, tolerance)
-        for index in range(len(self)):
-            defect = wrap(d - self.d[index])
-            size = np.abs(defect).max(axis=-1, initial=0.0)
-            match = (self.Y[index] == Y).all(axis=-1) & (size < nearest)
-            match &= (np.abs(A - self.A[index]) < 1e-6).all(axis=(-2, -1))
-            table[match], nearest[match] = index, size[match]
-            defects[match] = defect[match]
-        return table, defects
-
-    def composed(self, tolerance: float = SAME_OFFSET) -> CandidateGroup | None:
-        """Same relations with offsets that obey the composition law, or None if not closed.
-
-        `tolerance` is how far the given offsets may miss it [rad].
-
-        Notes
-        -----
-        The defects c(i, j) are a 2-cocycle; d_i - mean over j of c(i, j) composes exactly. Small
-        errors of the offsets are averaged over the group, which is the joint refinement under
-        d_ij = A_i d_j + d_i.
-        """
-        table, defects = self.products(tolerance)
-        if (table < 0).any():
-            return None
-        return CandidateGroup(self.basis, self.A, wrap(self.d - defects.mean(axis=1)), self.Y)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +58,8 @@ def fit_group(fit: FittedPotential, group: CandidateGroup) -> GroupFit:
     together to the unrestricted coefficients with their covariance (Gauss-Newton); the remaining
     misfit is chi-square distributed, or F where the noise level was estimated.
     """
-    coordinates, inside = _coordinates(fit.frequencies, group.basis)
-    average = _reynolds(fit.frequencies, coordinates, inside, group)
+    pull_backs = PullBacks(fit.frequencies, group)
+    coordinates, average = pull_backs.coordinates, pull_backs.average()
     values, vectors = np.linalg.eigh((average + average.T) / 2)
     basis = vectors[:, values > 0.5]
     rank = group.d.shape[1]
@@ -185,87 +110,24 @@ def torque_uncertainty(
     rms : (G, n) array
         Root mean square over all q of the same [N m].
     """
-    coordinates, inside = _coordinates(fit.frequencies, group.basis)
+    pull_backs = PullBacks(fit.frequencies, group)
     m = len(fit.frequencies)
     inverse = np.linalg.inv(fit.root)
     size = np.abs(fit.frequencies).astype(float)
     bound = np.empty((len(group), size.shape[1]))
     rms = np.empty_like(bound)
     for i in range(len(group)):
-        pulled = _pull_back(fit.frequencies, coordinates, inside, group, i)
+        pulled = pull_backs.matrix(i)
         difference = np.eye(2 * m) - pulled
         residual = difference @ fit.coefficients
         error = np.linalg.norm(difference @ inverse, axis=1)
         limit = np.hypot(
             np.hypot(residual[:m], residual[m:]), deviations * np.hypot(error[:m], error[m:])
         )
+        limit[~pulled[:m].any(axis=1)] *= 2.0  # both sides of the relation have the term alone
         bound[i] = limit @ size
         rms[i] = np.sqrt(0.5 * limit**2 @ size**2)
     return bound, rms
-
-
-def _coordinates(frequencies: Frequencies, basis: Ints) -> tuple[Ints, NDArray[np.bool_]]:
-    """Coordinates c with k = c B, and for which frequencies they exist."""
-    rows = basis.astype(float)
-    raw = frequencies @ np.linalg.pinv(rows) if len(rows) else np.zeros((len(frequencies), 0))
-    coordinates = np.round(raw).astype(np.int64)
-    inside = (coordinates @ basis == frequencies).all(axis=1)
-    coordinates[~inside] = 0
-    return coordinates, inside
-
-
-def _pull_back(
-    frequencies: Frequencies,
-    coordinates: Ints,
-    inside: NDArray[np.bool_],
-    group: CandidateGroup,
-    i: int,
-) -> Array:
-    """Matrix of C_k -> s_k exp(-i k.d) C_{s_k Y k} on (a, b); zero where k has no image.
-
-    A potential with the symmetry is a fixed point.
-    """
-    m = len(frequencies)
-    place = {k.tobytes(): j for j, k in enumerate(np.ascontiguousarray(frequencies))}
-    target = coordinates @ group.A[i] @ group.basis
-    flipped = frequencies * group.Y[i].astype(np.int64)
-    matrix = np.zeros((2 * m, 2 * m))
-    phase = coordinates @ group.d[i]
-    for row in np.flatnonzero(inside):
-        if np.abs(target[row] - flipped[row]).max() < 1e-6:
-            s = 1
-        elif np.abs(target[row] + flipped[row]).max() < 1e-6:
-            s = -1
-        else:
-            continue
-        k = s * flipped[row]
-        column, mirror = place.get(k.tobytes()), 1
-        if column is None:
-            column, mirror = place.get((-k).tobytes()), -1
-        if column is None:
-            continue
-        cosine, sine = s * np.cos(phase[row]), s * np.sin(phase[row])
-        matrix[row, column], matrix[row, m + column] = cosine, -mirror * sine
-        matrix[m + row, column], matrix[m + row, m + column] = sine, mirror * cosine
-    return matrix
-
-
-def _reynolds(
-    frequencies: Frequencies,
-    coordinates: Ints,
-    inside: NDArray[np.bool_],
-    group: CandidateGroup,
-) -> Array:
-    """Average of the pull-backs: projector onto potentials with all symmetries of the group."""
-    m = len(frequencies)
-    total = np.zeros((2 * m, 2 * m))
-    alive = np.ones(2 * m, dtype=bool)
-    for i in range(len(group)):
-        pulled = _pull_back(frequencies, coordinates, inside, group, i)
-        alive &= pulled.any(axis=1)
-        total += pulled
-    total[~alive] = 0.0
-    return total / len(group)
 
 
 def _rotation(phase: Array) -> Array:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.group_fit import CandidateGroup, GroupFit, fit_group
+from learning.candidate_group import CandidateGroup
+from learning.group_fit import GroupFit, fit_group
 from learning.potential_fit import FittedPotential
 from symbolic.relations import wrap
 from symbolic.support import Support

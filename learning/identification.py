@@ -12,7 +12,7 @@ from learning.group_search import candidate_relations, largest_consistent_group
 from learning.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
 from learning.lifting import lifted_relations
 from learning.offset_snapping import snapped_offsets
-from learning.potential_fit import FittedPotential, present_frequencies
+from learning.potential_fit import FittedPotential, present_frequencies, quantile
 from learning.samples import static_samples
 from learning.silent_joints import fit_on_active_joints
 from symbolic.relations import SymmetryGroup, identity
@@ -109,9 +109,7 @@ def _nothing(n: int, missing: str, fit: FittedPotential | None = None) -> Learne
 
 def _best_group(fit: FittedPotential) -> GroupFit | None:
     """Largest consistent group over several ideas of which frequencies are present."""
-    deviations = float(
-        stats.norm.isf(SCREEN) if np.isinf(fit.freedom) else stats.t.isf(SCREEN, fit.freedom)
-    )
+    deviations = quantile(float(stats.norm.isf(SCREEN)), fit.freedom)
     best: GroupFit | None = None
     tried: set[bytes] = set()
     for level in PRESENCE:
@@ -145,9 +143,7 @@ def claim(
     """
     rounded = snapped_offsets(best.group, best.offset_errors) if snap else None
     group = rounded or best.group
-    chance = stats.norm.sf(BOUND_DEVIATIONS)
-    deviations = BOUND_DEVIATIONS if np.isinf(fit.freedom) else stats.t.isf(chance, fit.freedom)
-    bound, rms = torque_uncertainty(fit, group, float(deviations))
+    bound, rms = torque_uncertainty(fit, group, quantile(BOUND_DEVIATIONS, fit.freedom))
     n = bound.shape[1]
     size = fit.rms_torque()
     involved = group.basis.any(axis=0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.group_fit import CandidateGroup
+from learning.candidate_group import CandidateGroup
 from symbolic.relations import wrap
 
 Array = NDArray[np.float64]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from learning.candidate_group import SAME_OFFSET, CandidateGroup
 from learning.false_alarms import AcceptedRelation
 from learning.free_regression import regress_relation
-from learning.group_fit import SAME_OFFSET, CandidateGroup
 from learning.learned_symmetries import FreeRegression, RejectedPairs
 from learning.potential_fit import tail_probability
 from learning.relation_group import Refinement

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from learning.candidate_group import SAME_OFFSET, CandidateGroup
 from learning.errors_in_variables import MeasurementNoise, Undetermined
 from learning.false_alarms import AcceptedRelation, accepted_relations
-from learning.group_fit import SAME_OFFSET, CandidateGroup
 from learning.identification import LARGEST_ERROR
 from learning.pair_evidence import supports
 from learning.relation_group import Refinement, completed, find_orbits, refine_offsets

@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from learning.candidate_group import CandidateGroup
 from learning.errors_in_variables import MeasurementNoise, Undetermined
-from learning.group_fit import CandidateGroup
 from learning.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
 from learning.lifting import lifted_relations
 from learning.offset_snapping import snapped_offsets

@@ -201,6 +201,16 @@ def present_frequencies(fit: FittedPotential, level: float) -> NDArray[np.bool_]
     return p_values < level / m
 
 
+def quantile(deviations: float, freedom: float) -> float:
+    """Standard errors that are exceeded as rarely as `deviations` by a normal variable.
+
+    More if the noise was estimated with few degrees of freedom (Student's t).
+    """
+    if np.isinf(freedom):
+        return deviations
+    return float(stats.t.isf(stats.norm.sf(deviations), freedom))
+
+
 def tail_probability(statistic: float, degrees: int, freedom: float) -> float:
     """P(misfit >= statistic): chi-square with `degrees`, or F where the noise was estimated."""
     if degrees <= 0:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.group_fit import SAME_OFFSET, CandidateGroup
+from learning.candidate_group import SAME_OFFSET, CandidateGroup
 from learning.row_votes import Tolerance
 from learning.torque_pairs import TorqueGroups
 from symbolic.relations import wrap

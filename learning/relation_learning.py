@@ -7,14 +7,14 @@ import dataclasses
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from learning.candidate_group import SAME_OFFSET, CandidateGroup
 from learning.errors_in_variables import MeasurementNoise, Undetermined
-from learning.group_fit import SAME_OFFSET, CandidateGroup, fit_group
+from learning.group_fit import fit_group
 from learning.identification import SIGNIFICANCE, claim, identify
 from learning.learned_symmetries import Knowledge, LearnedSymmetries
 from learning.pair_evidence import PairEvidence
 from learning.pair_search import PairSearch, search_pairs
 from learning.pairing import learned_from_pairs, nothing_stands_out
-from learning.potential_fit import FittedPotential
 from learning.relation_group import Refinement, completed
 from learning.samples import static_samples
 from symbolic.relations import SymmetryRelation, wrap

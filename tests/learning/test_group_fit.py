@@ -3,7 +3,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from learning.group_fit import CandidateGroup, fit_group, torque_uncertainty
+from learning.candidate_group import CandidateGroup
+from learning.group_fit import fit_group, torque_uncertainty
 from learning.lifting import lifted_relations
 from learning.potential_fit import all_frequencies, fit_potential, tail_probability
 from symbolic.relations import wrap

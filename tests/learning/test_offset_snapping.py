@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from learning.group_fit import CandidateGroup
+from learning.candidate_group import CandidateGroup
 from learning.offset_snapping import snapped_offsets
 from symbolic.relations import wrap
 from tests.learning.static_data import known_potential

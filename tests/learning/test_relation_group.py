@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from learning.group_fit import CandidateGroup
+from learning.candidate_group import CandidateGroup
 from learning.relation_group import completed, find_orbits, refine_offsets
 from learning.row_votes import Tolerance
 from learning.torque_pairs import group_by_torque
