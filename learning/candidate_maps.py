@@ -22,6 +22,8 @@ from symbolic.relations import SymmetryRelation
 
 Array = NDArray[np.float64]
 
+FIXED = 1e-10  # singular values of relation minus identity below it are rounding
+
 
 class Judgement(StrEnum):
     """What samples say of a candidate relation."""
@@ -142,7 +144,7 @@ def _p_value(fit: FittedPotential, relation: CandidateGroup) -> float:
     """Fit the coefficients among the fixed points of the relation; test the misfit."""
     pulled = PullBacks(fit.frequencies, relation).matrix(0)
     _, singular, directions = np.linalg.svd(pulled - np.eye(len(pulled)))
-    fixed = directions[singular < 1e-6].T
+    fixed = directions[singular < FIXED].T
     target = fit.root @ fit.coefficients
     misfit = target
     if fixed.shape[1]:
