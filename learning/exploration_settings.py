@@ -27,7 +27,7 @@ class ExplorationSettings:
         phi: a direction ends when the arm moves more than this away from it [rad]; pi/2 is Eq. 15.
     to_boundary : bool
         A torque outside the set of static torques is replaced by the last admissible one on the
-        way to it from the nearest torque ever held, less a tenth of the way; False: by that
+        way to it from the nearest torque ever held, less 30 % of the way; False: by that
         nearest held torque itself, which leaves the fringe of the set unexplored.
     joint_weights : tuple of float or None
         w of Eq. 13 where joints have different units; None: all 1.

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
+from learning.cell_choice import central_domain
 from learning.discovery import DiscoverySettings, babble, choose_target, discover
 from learning.exploration import ConstrainedDirectionSampling
 from learning.exploration_loop import Learner
@@ -119,7 +120,7 @@ class Scheme:
     static_torques : StaticTorqueSet
         The estimate of the SST.
     domain : FundamentalDomain or None
-        The estimate of the BCTS, near home.
+        The estimate of the BCTS, where the arm has settled and away from its limits.
     learner : Learner or None
         The inverse statics model.
     """
@@ -145,6 +146,7 @@ class Scheme:
         self.targets: list[Array] = []
         self.exploration: ConstrainedDirectionSampling | None = None
         self._make_learner, self._given, self._use = make_learner, group, use_symmetries
+        self._seen: list[Array] = []
         self._settled_q: list[Array] = []
         self._settled_torque: list[Array] = []
 
@@ -177,6 +179,7 @@ class Scheme:
         return None if self.learned is None else self.learned.group
 
     def _take(self, outcome: Outcome) -> None:
+        self._seen.append(np.array(outcome.q))
         if outcome.kind is OutcomeKind.SETTLED:
             self.static_torques.add(outcome.torque)
             self._settled_q.append(np.array(outcome.q))
@@ -236,7 +239,8 @@ class Scheme:
         group = self.group
         explored = None
         if group is not None:
-            self.domain = FundamentalDomain.near(group, self.home)
+            q, _ = self.samples
+            self.domain = central_domain(group, q, np.array(self._seen or [self.home]))
             points = self.domain.sample(np.random.default_rng(0), SHARE_POINTS)
             explored = ExploredShare(points, self.settings.exploration.step_width, group)
         self.learner = self._make_learner(group, self.torque_range)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 Vector = NDArray[np.float64]
 
 #: Steps and safety of the search for the boundary of the set of static torques.
-BISECTIONS = 4
-SAFE_SHARE = 0.9
+BISECTIONS = 3
+SAFE_SHARE = 0.7
 
 
 class StaticTorques(Protocol):
@@ -45,7 +45,7 @@ def nearest_admissible(known: StaticTorques | None, torque: Vector, to_boundary:
         Wanted torque [N m].
     to_boundary : bool
         Whether to look, from the nearest torque ever held towards the wanted one, for the last
-        admissible one (and then stay a tenth of the way behind it). The set is a continuum of
+        admissible one (and then stay 30 % of the way behind it). The set is a continuum of
         which finitely many torques are stored: taking those alone leaves its fringe, where
         joints are near their largest torque, unexplored.
 

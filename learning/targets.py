@@ -110,7 +110,8 @@ class DirectionTargets:
     -----
     A target that would leave the domain ends the direction. It is moved to the nearest point of
     the domain (``ExplorationCell``; along the step where the domain cannot tell), so that targets
-    reach the boundary and its corners; then a new direction is drawn. Eq. 13 prints ``|w^T dq|``
+    reach the boundary and its corners; then a new direction is drawn. From outside (home, or an
+    observed configuration) targets approach the domain step by step. Eq. 13 prints ``|w^T dq|``
     where the norm ``|w * dq|`` is meant.
     """
 
@@ -132,10 +133,6 @@ class DirectionTargets:
             raise InputError("targets", "weights", weights, "at least one number > 0")
         if not 0 <= home_probability <= 1:
             raise InputError("targets", "home probability", home_probability, "0 to 1")
-        if domain is not None and not domain.contains(self._home):
-            raise InputError(
-                "targets", "home configuration", self._home, "a configuration inside the domain"
-            )
         self._step_width = step_width
         self._home_probability = home_probability
         self._domain = domain
@@ -180,7 +177,9 @@ class DirectionTargets:
             return step, True
         nearest = getattr(domain, "nearest", None)
         if nearest is not None:
-            return np.asarray(nearest(self._current + step) - self._current), False
+            step = np.asarray(nearest(self._current + step) - self._current)
+            length = float(np.linalg.norm(self._weights * step))
+            return step * min(1.0, self._step_width / max(length, 1e-300)), False
         if not domain.contains(self._current):
             return np.zeros_like(step), False
         inside, outside = 0.0, 1.0
