@@ -18,7 +18,7 @@ from verify.strategies import known_arms
 
 
 @given(
-    known_arms(min_joints=2, max_joints=3, planted=None),
+    known_arms(min_joints=2, max_joints=4, planted=None),
     st.integers(0, 2**32 - 1),
     st.integers(1, 5),
     st.booleans(),
