@@ -12,8 +12,6 @@ from typing import Any
 from numba import config, njit
 
 _SHARED = ("kernel.py", "chain.py", "plant.py", "step_control.py")
-# Sums may be reordered and fused, but NaN and infinity keep their meaning: they are tested for.
-_FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
 
 
 def kernel(function: Callable[..., Any]) -> Any:
@@ -54,9 +52,9 @@ def _compiled(function: Callable[..., Any], inline: str) -> Any:
     if os.access(folder, os.W_OK):
         config.CACHE_DIR = str(folder / "__pycache__" / f"kernels-{_fingerprint(folder)}")
     try:
-        return njit(cache=True, fastmath=_FASTMATH, error_model="numpy", inline=inline, _nrt=False)(
-            function
-        )
+        # No fastmath: with it the last bits depend on how functions happened to be compiled
+        # together, and a process that compiles ends otherwise than one that loads the cache.
+        return njit(cache=True, error_model="numpy", inline=inline, _nrt=False)(function)
     finally:
         config.CACHE_DIR = previous
 

@@ -88,7 +88,7 @@ def make_scratch(grid: CellGrid, outputs: int) -> Scratch:
     )
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
+@njit(cache=True, error_model="numpy")
 def exponential(x):
     """exp(x) for x from -60 to 0, to 1e-14 near 0 and a share of 1e-6 at -40.
 
@@ -123,7 +123,7 @@ def search(grid, counts, y, work):
     return found, least
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
+@njit(cache=True, error_model="numpy")
 def weigh(work, found, least, kernel):
     """Normalised responsibilities (Eq. 18), relative to the nearest so that none underflows."""
     squared, responsibility = work.squared, work.responsibility
@@ -138,7 +138,7 @@ def weigh(work, found, least, kernel):
         responsibility[e] *= total
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
+@njit(cache=True, error_model="numpy")
 def blend(parameters, work, found, rank, rule):
     """The estimate of Eq. 18, into ``work.output``."""
     responsibility, offset, output = work.responsibility, work.offset, work.output

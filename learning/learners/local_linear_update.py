@@ -57,7 +57,7 @@ def squared_features(work, found, rank, rule):
     return total
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc", "nsz"})
+@njit(cache=True, error_model="numpy")
 def descend(parameters, work, found, torque, step, rank, rule):
     """One move of the parameters by ``step`` times error times features (Eq. 20, 21)."""
     responsibility, offset = work.responsibility, work.offset
