@@ -13,15 +13,20 @@ from learning.learners.cell_grid import make_cell_grid, sees_several_images, wit
 from learning.learners.cell_search import enter
 from learning.learners.local_linear_kernels import Rule, make_scratch, predict_batch, slope_batch
 from learning.learners.local_linear_update import train
-from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
+from learning.learners.sample_checks import (
+    checked_configurations,
+    checked_samples,
+    fitted,
+    require,
+    some_weight,
+)
 from learning.learners.saved_learner import SavedLearner
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
 
-#: Prototypes for which there is room at first; doubled whenever it runs out.
-FIRST_ROOM = 64
+FIRST_ROOM = 64  # prototypes; doubled whenever it runs out
 
 
 class LocalLinearMap(RegressorMixin, SavedLearner):
@@ -133,6 +138,7 @@ class LocalLinearMap(RegressorMixin, SavedLearner):
         LocalLinearMap
             Itself.
         """
+        some_weight(sample_weight)
         if hasattr(self, "n_outputs_"):
             del self.n_outputs_
         return self.partial_fit(X, y, sample_weight)
@@ -151,7 +157,7 @@ class LocalLinearMap(RegressorMixin, SavedLearner):
             self._check_parameters()
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=first)
         if first:
-            self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
+            self._start(q.shape[1], torque.shape[1], np.asarray(y).ndim == 1)
         draws = self._random.random((len(q), 1 + self.replay if self.replay else 0))
         progress = np.zeros(3, dtype=np.int64)
         while not train(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,13 @@ from sklearn.base import RegressorMixin
 from learning.learners.cell_grid import make_cell_grid, with_room
 from learning.learners.cell_search import enter
 from learning.learners.local_linear_kernels import make_scratch
-from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
+from learning.learners.sample_checks import (
+    checked_configurations,
+    checked_samples,
+    fitted,
+    require,
+    some_weight,
+)
 from learning.learners.sample_dictionary import SampleDictionary
 from learning.learners.saved_learner import SavedLearner
 from learning.learners.square_root_filter import SquareRootFilter
@@ -24,6 +31,25 @@ Array = NDArray[np.float64]
 
 #: Prototypes for which there is room at first; doubled whenever it runs out.
 FIRST_ROOM = 32
+
+
+@dataclass(eq=False)
+class _Solved:
+    """Filters and parameters of each class of joints; brought up to date when asked for.
+
+    Attributes
+    ----------
+    filters : list of SquareRootFilter
+        Of no use while ``stale``: a prototype has appeared since.
+    solution : list of (F, joints) arrays, or None
+        Parameters; None where samples have come since.
+    stale : bool
+        Whether all must be solved anew.
+    """
+
+    filters: list[SquareRootFilter]
+    solution: list[Array] | None = None
+    stale: bool = True
 
 
 class RecursiveLeastSquares(RegressorMixin, SavedLearner):
@@ -77,8 +103,7 @@ class RecursiveLeastSquares(RegressorMixin, SavedLearner):
     True
     """
 
-    _filters: list[SquareRootFilter]
-    _solution: list[Array] | None
+    _solved: _Solved
 
     def __init__(
         self,
@@ -114,6 +139,7 @@ class RecursiveLeastSquares(RegressorMixin, SavedLearner):
         RecursiveLeastSquares
             Itself.
         """
+        some_weight(sample_weight)
         if hasattr(self, "n_outputs_"):
             del self.n_outputs_
         return self.partial_fit(X, y, sample_weight)
@@ -132,14 +158,14 @@ class RecursiveLeastSquares(RegressorMixin, SavedLearner):
             self._check_parameters()
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=first)
         if first:
-            self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
+            self._start(q.shape[1], torque.shape[1], np.asarray(y).ndim == 1)
         for sample in zip(q, torque, weights, strict=True):
             self._dictionary.add(*sample)
             if self._offer_prototype(sample[0]):
-                self._stale = True
-        if not self._stale:
+                self._solved.stale = True
+        if not self._solved.stale:
             self._take_in(q, torque, weights)
-        self._solution = None
+        self._solved.solution = None
         self.n_samples_seen_ += len(q)
         return self
 
@@ -168,7 +194,7 @@ class RecursiveLeastSquares(RegressorMixin, SavedLearner):
     def _arrays(self) -> dict[str, NDArray]:
         self._solve()
         arrays = {"prototypes": self.prototypes_, **self._dictionary.to_arrays()}
-        for c, least_squares in enumerate(self._filters):
+        for c, least_squares in enumerate(self._solved.filters):
             arrays[f"factor_{c}"] = least_squares.factor
             arrays[f"right_{c}"] = least_squares.right
         return arrays
@@ -177,11 +203,11 @@ class RecursiveLeastSquares(RegressorMixin, SavedLearner):
         for point in arrays["prototypes"]:
             self._add_prototype(point)
         self._dictionary.restore(arrays)
-        self._filters = [SquareRootFilter(0, 0, self.ridge) for _ in self._classes]
-        for c, least_squares in enumerate(self._filters):
+        self._solved.filters = [SquareRootFilter(0, 0, self.ridge) for _ in self._classes]
+        for c, least_squares in enumerate(self._solved.filters):
             least_squares.factor = arrays[f"factor_{c}"]
             least_squares.right = arrays[f"right_{c}"]
-        self._stale = False
+        self._solved.stale = False
 
     def _check_parameters(self) -> None:
         for name in ("radius", "kernel_width", "ridge", "cutoff"):
@@ -210,9 +236,7 @@ class RecursiveLeastSquares(RegressorMixin, SavedLearner):
         self._counts = np.zeros(2, dtype=np.int64)
         self._make_room(FIRST_ROOM)
         self._dictionary = SampleDictionary(self.memory, self.group)
-        self._filters = []
-        self._solution = None
-        self._stale = True
+        self._solved = _Solved([])
         self._flat = flat
         self.n_outputs_ = outputs
         self.n_samples_seen_ = 0
@@ -251,21 +275,23 @@ class RecursiveLeastSquares(RegressorMixin, SavedLearner):
         features = self._features(q)
         for c, joints in enumerate(self._classes):
             for row, target, weight in zip(features[c], torque[:, joints], weights, strict=True):
-                self._filters[c].update(row, target, weight)
+                self._solved.filters[c].update(row, target, weight)
 
     def _solve(self) -> list[Array]:
         """Parameters (F, joints of the class) for each class of joints."""
-        if self._stale:
+        if self._solved.stale:
             root = np.sqrt(self._dictionary.weights)[:, None]
             features = self._features(self._dictionary.q)
-            self._filters = [
+            self._solved.filters = [
                 SquareRootFilter.from_samples(
                     root * features[c], root * self._dictionary.torque[:, joints], self.ridge
                 )
                 for c, joints in enumerate(self._classes)
             ]
-            self._stale = False
-            self._solution = None
-        if self._solution is None:
-            self._solution = [least_squares.solution() for least_squares in self._filters]
-        return self._solution
+            self._solved.stale = False
+            self._solved.solution = None
+        if self._solved.solution is None:
+            self._solved.solution = [
+                least_squares.solution() for least_squares in self._solved.filters
+            ]
+        return self._solved.solution

@@ -69,7 +69,8 @@ def checked_samples(
     if torque.ndim == 1:
         torque = torque[:, None]
     if torque.ndim != 2 or len(torque) != len(X):
-        raise InputError("y", "shape", np.shape(y), f"one row for each of the {len(X)} samples")
+        accepted = f"one row for each of the {len(X)} samples"
+        raise InputError("y", "shape", np.asarray(y).shape, accepted)
     known = getattr(learner, "n_outputs_", None)
     if not first and known is not None and torque.shape[1] != known:
         raise InputError("y", "number of columns", torque.shape[1], f"{known}, as before")
@@ -84,6 +85,12 @@ def checked_samples(
         if weights.min() < 0:
             raise InputError("sample_weight", "weight", weights.min(), "numbers >= 0")
     return X, np.ascontiguousarray(torque), weights
+
+
+def some_weight(sample_weight: Any) -> None:
+    """Refuse weights that are all zero: there would be nothing to fit to."""
+    if sample_weight is not None and not np.any(np.asarray(sample_weight, dtype=float)):
+        raise InputError("sample_weight", "every weight", "zero", "at least one number > 0")
 
 
 def fitted(learner: Any) -> None:

@@ -65,6 +65,18 @@ class SavedLearner(BaseEstimator, ABC):
         learner.n_samples_seen_ = state["samples_seen"]
         return learner
 
+    def __getstate__(self) -> dict[str, Any]:
+        if not hasattr(self, "n_outputs_"):
+            return dict(self.get_params(deep=False))
+        return {"group": self.group, "saved": (self.to_arrays(), self.parameters())}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        if "saved" in state:
+            self.__dict__.update(type(self).from_arrays(*state["saved"]).__dict__)
+            self.group = state["group"]
+        else:
+            self.__dict__.update(state)
+
     def _counters(self) -> dict[str, Any]:
         return {}
 

@@ -32,7 +32,7 @@ class SlowMap:
         if len(self.nodes) < 2:
             away = [np.linalg.norm(difference(w, y)) for w in self.nodes.values()]
             if not away or away[0] > self.spacing:
-                new = self.add(y)
+                self.add(y)
                 if away:
                     self.edges.add(frozenset(self.nodes))
             elif away:
