@@ -19,7 +19,12 @@ def _local_linear_map_it(group: SymmetryGroup | None) -> Any:
     from learning.learners.local_linear_map import LocalLinearMap
 
     return LocalLinearMap(
-        radius=0.25, kernel_width=1.75, inner_iterations=None, replay=10, group=group
+        radius=0.3,
+        kernel_width=2.5,
+        inner_iterations=None,
+        relaxation=0.6,
+        replay=60,
+        group=group,
     )
 
 

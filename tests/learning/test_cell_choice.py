@@ -35,7 +35,7 @@ def test_takes_the_stable_cell_away_from_the_limits(planar, seed):
 def test_full_turns_of_what_was_seen_are_followed(planar):
     """An arm with angles around 2 pi explores there."""
     gravity, group = planar
-    settled = stable(gravity, 300, 0) + [2 * np.pi, 0.0]
+    settled = stable(gravity, 300, 0) + np.array([2 * np.pi, 0.0])
     domain = central_domain(group, settled, settled)
     assert settled[:, 0].min() < domain.center[0] < settled[:, 0].max()
 
