@@ -127,7 +127,7 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
         """
         fitted(self)
         q = checked_configurations(self, X, first=False)
-        mean, deviation = np.empty((2, len(q), self.n_outputs_))
+        mean, deviation = np.zeros((2, len(q), self.n_outputs_))
         together = max(1, TOGETHER // len(self._q))
         for joint, process in enumerate(self.processes_):
             for i in range(0, len(q), together):
