@@ -32,12 +32,12 @@ from sklearn.kernel_ridge import KernelRidge
 from sklearn.neural_network import MLPRegressor
 
 from benchmarks.batch_tables import Row, equal_errors, tables
-from learning.lattice import lattice_samples
 from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.network import FeedForwardNetwork
 from learning.learners.static_regressor import StaticRegressor
 from learning.learners.trigonometric import EquivariantTrigonometric
-from learning.sampling_region import SamplingRegion
+from learning.sampling.lattice import lattice_samples
+from learning.sampling.sampling_region import SamplingRegion
 from learning.symmetry_use import SymmetricSamples
 from symbolic.domain import FundamentalDomain
 from symbolic.gravity import GravityModel

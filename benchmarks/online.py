@@ -29,7 +29,7 @@ import numpy as np
 
 from benchmarks.online_rows import Row, table
 from isotorque.paper_targets import paper_targets
-from learning.exploration import (
+from learning.exploration.strategies import (
     DirectionSampling,
     Exploration,
     ExplorationSettings,
@@ -39,7 +39,7 @@ from learning.learners.local_linear_map import LocalLinearMap
 from learning.learners.recursive_least_squares import RecursiveLeastSquares
 from learning.physics import MeasurementNoise
 from learning.scheme import Scheme, SchemeSettings
-from learning.simulation import SimulatedArm
+from learning.simulation.simulated_arm import SimulatedArm
 from symbolic.domain import FundamentalDomain
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot

@@ -27,10 +27,10 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.identification import identify
-from learning.learned_symmetries import LearnedSymmetries
-from learning.pairing import pair_relations
-from learning.relation_learning import learn_relations
+from learning.relations.identification import identify
+from learning.relations.learned_symmetries import LearnedSymmetries
+from learning.relations.pairing import pair_relations
+from learning.relations.relation_learning import learn_relations
 from symbolic.gravity import GravityModel
 from symbolic.level_sets import level_set
 from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap

@@ -40,7 +40,7 @@ from learning.arm import OutcomeKind
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
 from learning.recordings.run_info import RunInfo
-from learning.simulation import SimulatedArm
+from learning.simulation.simulated_arm import SimulatedArm
 from symbolic.robots import load_robot
 
 try:

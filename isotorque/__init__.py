@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from learning.arm import Settled as Settled
     from learning.arm import TimedOut as TimedOut
     from learning.discovery import discover as discover
-    from learning.identification import identify as identify
     from learning.learners.local_linear_map import LocalLinearMap as LocalLinearMap
     from learning.recordings.recording import Recording as Recording
+    from learning.relations.identification import identify as identify
     from learning.scheme import Scheme as Scheme
-    from learning.simulation import SimulatedArm as SimulatedArm
-    from learning.static_torques import StaticTorqueSet as StaticTorqueSet
+    from learning.simulation.simulated_arm import SimulatedArm as SimulatedArm
+    from learning.static_torques.static_torque_set import StaticTorqueSet as StaticTorqueSet
     from symbolic.approximate_symmetries import maximal_groups as maximal_groups
     from symbolic.domain import FundamentalDomain as FundamentalDomain
     from symbolic.errors import InputError as InputError
@@ -65,15 +65,15 @@ _HOME = {
     "Robot": "symbolic.robots",
     "Scheme": "learning.scheme",
     "Settled": "learning.arm",
-    "SimulatedArm": "learning.simulation",
-    "StaticTorqueSet": "learning.static_torques",
+    "SimulatedArm": "learning.simulation.simulated_arm",
+    "StaticTorqueSet": "learning.static_torques.static_torque_set",
     "SymmetryGroup": "symbolic.relations",
     "SymmetryRelation": "symbolic.relations",
     "TimedOut": "learning.arm",
     "TrigonometricPolynomial": "symbolic.trigonometric",
     "Verdict": "verify.verdict",
     "discover": "learning.discovery",
-    "identify": "learning.identification",
+    "identify": "learning.relations.identification",
     "load_relations": "verify.relation_files",
     "load_robot": "symbolic.robots",
     "maximal_groups": "symbolic.approximate_symmetries",

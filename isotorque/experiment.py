@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from isotorque.run_options import ArmOptions, RunOptions
 from learning.arm import OutcomeKind
-from learning.exploration_step import ExplorationStep
+from learning.exploration.step import ExplorationStep
 from learning.learners.by_name import online_learner
 from learning.model_files import SavedModel, save_model
 from learning.physics import MeasurementNoise
@@ -23,7 +23,7 @@ from learning.recordings.recording import Recording
 from learning.recordings.recording_reader import RecordingReader
 from learning.recordings.run_info import RunInfo
 from learning.scheme import Discovery, Scheme, SchemeSettings
-from learning.simulation import SimulatedArm
+from learning.simulation.simulated_arm import SimulatedArm
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from symbolic.robots import Robot, load_robot

@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
-from learning.cell_choice import central_domain
 from learning.discovery import DiscoverySettings, babble, choose_target, discover
-from learning.exploration import ConstrainedDirectionSampling
-from learning.exploration_loop import Learner
-from learning.exploration_settings import ExplorationSettings
-from learning.exploration_step import ExplorationStep
-from learning.explored_share import ExploredShare
-from learning.learned_symmetries import LearnedSymmetries
-from learning.relation_learning import learn_relations
-from learning.static_torques import StaticTorqueSet
+from learning.exploration.cell_choice import central_domain
+from learning.exploration.explored_share import ExploredShare
+from learning.exploration.loop import Learner
+from learning.exploration.settings import ExplorationSettings
+from learning.exploration.step import ExplorationStep
+from learning.exploration.strategies import ConstrainedDirectionSampling
+from learning.relations.learned_symmetries import LearnedSymmetries
+from learning.relations.relation_learning import learn_relations
+from learning.static_torques.static_torque_set import StaticTorqueSet
 from symbolic.domain import FundamentalDomain
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryGroup

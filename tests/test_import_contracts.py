@@ -36,9 +36,9 @@ def test_contracts_hold(tmp_path):
     "planted",
     [
         ("learning/discovery.py", "import symbolic.gravity"),
-        ("learning/identification.py", "from symbolic.robots import load_robot"),
+        ("learning/relations/identification.py", "from symbolic.robots import load_robot"),
         ("learning/learners/local_linear_map.py", "import pinocchio"),
-        ("learning/scheme.py", "from learning.simulation import SimulatedArm"),
+        ("learning/scheme.py", "from learning.simulation.simulated_arm import SimulatedArm"),
         ("symbolic/relations.py", "import learning.arm"),
         ("verify/verdict.py", "import isotorque.experiment"),
     ],

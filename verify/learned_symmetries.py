@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.learned_symmetries import LearnedSymmetries
+from learning.relations.learned_symmetries import LearnedSymmetries
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap

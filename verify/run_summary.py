@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.arm import OutcomeKind
-from learning.exploration_step import ExplorationStep
+from learning.exploration.step import ExplorationStep
 from learning.scheme import Discovery, GateDecision
-from learning.static_torques import StaticTorqueSet
+from learning.static_torques.static_torque_set import StaticTorqueSet
 from symbolic.domain import FundamentalDomain
 from symbolic.relations import SymmetryGroup, wrap
 from verify.figures.torques import ProfileTrace

@@ -25,7 +25,7 @@ def relations(
     from isotorque.cli.output import plain
     from isotorque.experiment import DATABASE
     from learning.recordings.recording_reader import RecordingReader
-    from learning.relation_learning import learn_relations
+    from learning.relations.relation_learning import learn_relations
     from verify.relation_files import relations_document
 
     with RecordingReader(run / DATABASE) as reader:

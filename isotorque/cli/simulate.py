@@ -50,7 +50,7 @@ def simulate(
     import numpy as np
 
     from learning.physics import MeasurementNoise
-    from learning.simulation import SimulatedArm
+    from learning.simulation.simulated_arm import SimulatedArm
     from symbolic.robots import load_robot
 
     loaded = load_robot(robot, snap=not no_snap)

@@ -14,7 +14,7 @@ from learning.dynamics.free_directions import FreeDirections, find_free_directio
 from learning.dynamics.home import STABLE, find_home
 from learning.dynamics.regularity import check_mass_matrix
 from learning.physics import PhysicsMode
-from learning.simulation_input import not_negative, vector
+from learning.simulation.input import not_negative, vector
 from symbolic.errors import InputError
 from symbolic.robots import Robot
 
@@ -60,7 +60,7 @@ def assemble(
     physics
         Physics mode.
     damping, coulomb, limits, home
-        As in `learning.simulation.SimulatedArm`.
+        As in `learning.simulation.simulated_arm.SimulatedArm`.
 
     Raises
     ------

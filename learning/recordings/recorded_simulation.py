@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from learning.arm import Outcome
 from learning.recordings.recorded_arm import RecordedArm
 from learning.recordings.recorded_command import CommandKind, Row, outcome_in, to_array, to_bytes
-from learning.simulation_results import Hold, Release
+from learning.simulation.results import Hold, Release
 
 
 class RecordedSimulation(RecordedArm):
-    """A ``RecordedArm`` around a ``learning.simulation.SimulatedArm``.
+    """A ``RecordedArm`` around a ``learning.simulation.simulated_arm.SimulatedArm``.
 
     Parameters and errors are those of ``RecordedArm``.
 
@@ -24,7 +24,7 @@ class RecordedSimulation(RecordedArm):
     >>> from pathlib import Path
     >>> from learning.recordings.recording import Recording
     >>> from learning.recordings.run_info import RunInfo
-    >>> from learning.simulation import SimulatedArm
+    >>> from learning.simulation.simulated_arm import SimulatedArm
     >>> from symbolic.robots import load_robot
     >>> robot = load_robot("2r")
     >>> arm = SimulatedArm(robot, physics="guided")

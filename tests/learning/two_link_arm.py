@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from learning.simulation import SimulatedArm
+from learning.simulation.simulated_arm import SimulatedArm
 from symbolic.robots import load_robot
 
 ROBOT = load_robot("2r")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from learning.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
+from learning.relations.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup, SymmetryRelation
 from symbolic.symmetries import primary_symmetries

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from learning.arm import LimitHit, Playback, Settled, TimedOut
-from learning.exploration_step import ExplorationStep
+from learning.exploration.step import ExplorationStep
+from learning.exploration.targets import Phase
 from learning.scheme import Discovery, GateDecision
-from learning.static_torques import StaticTorqueSet
-from learning.targets import Phase
+from learning.static_torques.static_torque_set import StaticTorqueSet
 from symbolic.domain import FundamentalDomain
 from symbolic.symmetries import primary_symmetries
 from verify.run_summary import (

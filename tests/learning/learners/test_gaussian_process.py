@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sklearn.base import clone
 
-from learning.lattice import lattice_samples
 from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.symmetric_kernel import SymmetrisedPeriodicKernel
-from learning.sampling_region import SamplingRegion
+from learning.sampling.lattice import lattice_samples
+from learning.sampling.sampling_region import SamplingRegion
 from learning.symmetry_use import SymmetryCoordinates
 from symbolic.domain import FundamentalDomain
 from symbolic.errors import InputError

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.lattice import lattice_samples
 from learning.learners.network import FeedForwardNetwork
-from learning.sampling_region import SamplingRegion
+from learning.sampling.lattice import lattice_samples
+from learning.sampling.sampling_region import SamplingRegion
 from symbolic.domain import FundamentalDomain
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.lattice import lattice_samples
 from learning.learners.equivariant_basis import multi_affine_frequencies, torque_basis
 from learning.learners.trigonometric import EquivariantTrigonometric
-from learning.sampling_region import SamplingRegion
+from learning.sampling.lattice import lattice_samples
+from learning.sampling.sampling_region import SamplingRegion
 from learning.symmetry_use import SymmetryCoordinates
 from symbolic.domain import FundamentalDomain
 from symbolic.errors import InputError

@@ -11,7 +11,7 @@ from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
 from learning.recordings.recording_reader import RecordingReader
 from learning.recordings.run_info import RunInfo
-from learning.simulation import SimulatedArm
+from learning.simulation.simulated_arm import SimulatedArm
 from symbolic.errors import InputError
 from symbolic.robots import load_robot
 from tests.learning.recordings.recording_tools import tables

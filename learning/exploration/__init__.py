@@ -1,0 +1,1 @@
+"""Goal-directed exploration: direction sampling, goal babbling, and what constrains them."""

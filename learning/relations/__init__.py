@@ -1,0 +1,1 @@
+"""Symmetry relations from recordings: pairing, identification, group completion, confirmation."""

@@ -1,0 +1,157 @@
+"""What was learned about the symmetries of an arm, and how it is known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.relations.potential_fit import FittedPotential
+from symbolic.relations import SymmetryGroup, SymmetryRelation
+
+Array = NDArray[np.float64]
+
+
+class Knowledge(StrEnum):
+    """How a relation is known."""
+
+    OBSERVED = "observed"
+    """Pairs of recorded configurations obey it."""
+    IMPLIED = "implied by the group"
+    """It is a product of observed relations."""
+    IDENTIFIED = "identified"
+    """The potential fitted to the samples has it."""
+
+
+@dataclass(frozen=True, eq=False)
+class FreeRegression:
+    """Real relation q_s = A q_r + d by multiple linear regression on the pairs of a relation.
+
+    Attributes
+    ----------
+    A, A_error : (n, n) arrays
+        Coefficients and their standard errors; a joint that did not vary has error infinity.
+    d, d_error : (n,) arrays
+        Offset and standard errors [rad].
+    pairs : int
+        Number of pairs.
+
+    Notes
+    -----
+    The paper's section 4.2: ``M q_r + N q_s = d`` with N = I, M = -A. Angles are taken on the
+    branch modulo 2 pi that the integer relation predicts.
+    """
+
+    A: Array
+    A_error: Array
+    d: Array
+    d_error: Array
+    pairs: int
+
+    @property
+    def M(self) -> Array:
+        """M of the paper's Eq. 5, shape (n, n)."""
+        return -self.A + 0.0
+
+    @property
+    def N(self) -> Array:
+        """N of the paper's Eq. 5, shape (n, n)."""
+        return np.eye(len(self.d))
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedRelation:
+    """A symmetry relation learned from data.
+
+    Attributes
+    ----------
+    relation : SymmetryRelation
+        With integer A; its ``bound`` is what the data guarantee at three standard errors [N m]
+        (NaN where no potential could be fitted).
+    known : Knowledge
+        How it is known.
+    support : int
+        Number of distinct torques |tau| among the pairs that obey it; 0 if none was recorded.
+    standard_error : (r,) array
+        Standard error of d in y = B q coordinates [rad], as measured.
+    p_value : float
+        Probability of a misfit at least as large if the relation holds: small speaks against it.
+    log10_false_alarms : float
+        Expected number of relations as well supported as this among random configurations, as a
+        decimal logarithm; NaN where it was not found by pairing.
+    regression : FreeRegression or None
+        Free real regression on the pairs.
+    snapped : bool
+        Whether d was rounded to multiples of a right angle, with which the measured d agrees.
+    """
+
+    relation: SymmetryRelation
+    known: Knowledge
+    support: int
+    standard_error: Array
+    p_value: float
+    log10_false_alarms: float = float("nan")
+    regression: FreeRegression | None = None
+    snapped: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class RejectedPairs:
+    """Pairs with equal |torque| that no accepted relation connects.
+
+    Attributes
+    ----------
+    Y : (n,) array
+        Torque signs between the two configurations.
+    q_r, q_s : (m, n) arrays
+        The configurations [rad].
+    torque_index : (m,) int array
+        Which torque they belong to.
+    """
+
+    Y: Array
+    q_r: Array
+    q_s: Array
+    torque_index: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        """Number of pairs."""
+        return len(self.q_r)
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedSymmetries:
+    """Group of symmetries learned from static samples.
+
+    Attributes
+    ----------
+    group : SymmetryGroup
+        The relations as a closed group; only the identity where nothing is known.
+    relations : tuple of LearnedRelation
+        In the order of ``group``.
+    missing : str or None
+        What is missing before (more) relations can be claimed; None where nothing is.
+    method : str
+        "identification", "pairing" or "pairing and identification".
+    fit : FittedPotential or None
+        The potential fitted to the samples, with its covariance.
+    rejected : tuple of RejectedPairs
+        Secondary pairs, by torque signs.
+    contradicted : tuple of LearnedRelation
+        Relations that pairs seem to show and the fitted potential excludes.
+    """
+
+    group: SymmetryGroup
+    relations: tuple[LearnedRelation, ...]
+    missing: str | None
+    method: str
+    fit: FittedPotential | None = None
+    rejected: tuple[RejectedPairs, ...] = field(default=())
+    contradicted: tuple[LearnedRelation, ...] = field(default=())
+
+    @property
+    def order(self) -> int:
+        """Number of relations, the identity included."""
+        return self.group.order

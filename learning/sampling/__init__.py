@@ -1,0 +1,1 @@
+"""Samples for batch learning: lattices that fill a domain evenly."""

@@ -1,0 +1,1 @@
+"""An arm to experiment on: torques in, settled configurations out."""

@@ -1,0 +1,1 @@
+"""The set of static torques (SST) that a robot has found it can hold."""

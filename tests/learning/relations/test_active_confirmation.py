@@ -1,0 +1,87 @@
+import numpy as np
+import pytest
+
+from learning.relations.active_confirmation import confirm_by_release, most_telling_sample
+from learning.relations.errors_in_variables import MeasurementNoise
+from learning.relations.identification import identify
+from learning.relations.potential_fit import all_frequencies, fit_potential
+from learning.simulation.simulated_arm import SimulatedArm
+from symbolic.errors import InputError
+from symbolic.relations import SymmetryRelation
+from symbolic.robots import load_robot
+from tests.learning.static_data import known_potential, stable_samples, with_angle_noise
+
+
+def noisy_fit(rng, count, degrees=0.3):
+    potential, group = known_potential("2r")
+    q, tau = stable_samples(potential, rng, count)
+    noise = MeasurementNoise(np.deg2rad(degrees), 0.0)
+    noisy = with_angle_noise(q, degrees, rng)
+    return noisy, tau, fit_potential(noisy, tau, all_frequencies(2), noise), group, potential
+
+
+def forbidden_spread(fit, potential):
+    """Uncertainty of the coefficients that the arm does not have."""
+    m = len(fit.frequencies)
+    own = {tuple(k) for k in potential.frequencies.tolist()}
+    others = [i for i, k in enumerate(fit.frequencies.tolist()) if tuple(k) not in own]
+    return np.sqrt((fit.standard_error[others] ** 2 + fit.standard_error[m:][others] ** 2).sum())
+
+
+def test_the_chosen_sample_decides_faster_than_chance():
+    better = 0
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        q, tau, fit, group, potential = noisy_fit(rng, 6)
+        proposals, _ = stable_samples(potential, rng, 40)
+        chosen = most_telling_sample(fit, group, proposals)
+        spreads = []
+        for index in (chosen.index, int(rng.integers(40))):
+            angles = with_angle_noise(proposals[index : index + 1], 0.3, rng)
+            more_q = np.concatenate([q, angles])
+            more_tau = np.concatenate([tau, potential.gradient(proposals[index : index + 1])])
+            noise = MeasurementNoise(np.deg2rad(0.3), 0.0)
+            later = fit_potential(more_q, more_tau, all_frequencies(2), noise)
+            spreads.append(forbidden_spread(later, potential))
+        better += spreads[0] <= spreads[1]
+    assert better >= 15
+
+
+def test_information_is_what_the_covariance_loses():
+    rng = np.random.default_rng(1)
+    _, _, fit, group, potential = noisy_fit(rng, 10)
+    proposals, _ = stable_samples(potential, rng, 30)
+    found = most_telling_sample(fit, group, proposals)
+    assert found.information > 0.0
+    np.testing.assert_array_equal(found.q, proposals[found.index])
+    np.testing.assert_allclose(found.torque, fit.potential.gradient(found.q), atol=1e-9)
+    again = most_telling_sample(fit, group, proposals[[found.index]])
+    assert np.isclose(again.information, found.information)
+
+
+def test_a_release_test_confirms_true_relations_and_refutes_others():
+    robot = load_robot("2r")
+    arm = SimulatedArm(robot, physics="guided")
+    potential, _ = known_potential("2r")
+    q, tau = stable_samples(potential, np.random.default_rng(2), 8)
+    learned = identify(q, tau)
+    for relation in learned.group:
+        assert confirm_by_release(arm, relation, q, tau).passed
+    lie = SymmetryRelation([[-1, 0], [2, -1]], [0, 0], [1, 1])
+    refuted = confirm_by_release(arm, lie, q, tau)
+    assert not refuted.passed
+    assert refuted.counterexample is not None
+    assert refuted.tested == 8
+
+
+def test_nothing_tested_is_not_passed():
+    arm = SimulatedArm(load_robot("2r"), physics="guided")
+    relation = known_potential("2r")[1][1]
+    assert not confirm_by_release(arm, relation, np.zeros((0, 2)), np.zeros((0, 2))).passed
+
+
+def test_no_proposals_are_refused():
+    rng = np.random.default_rng(3)
+    _, _, fit, group, _ = noisy_fit(rng, 8)
+    with pytest.raises(InputError, match="shape of proposals"):
+        most_telling_sample(fit, group, np.zeros((0, 2)))
