@@ -58,7 +58,7 @@ def _one(
 def _model(
     path: Path, robot: Robot, gravity: GravityModel, tolerance: float | None
 ) -> tuple[Verdict, ...]:
-    saved = load_model(path)
+    saved = load_model(path, robot)
     if saved.joint_names != robot.joint_names:
         raise InputError(path, "joints", list(saved.joint_names), f"{list(robot.joint_names)}")
     allowed = MODEL_TOLERANCE if tolerance is None else tolerance

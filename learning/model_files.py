@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib
 import io
 import json
 import os
 import zipfile
 import zlib
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,13 +20,19 @@ from symbolic.errors import InputError
 
 SCHEMA = 1
 CLASSES = {
+    "EquivariantTrigonometric": "learning.learners.trigonometric",
+    "FeedForwardNetwork": "learning.learners.network",
     "LocalLinearMap": "learning.learners.local_linear_map",
     "RecursiveLeastSquares": "learning.learners.recursive_least_squares",
+    "StaticRegressor": "learning.learners.static_regressor",
+    "SymmetricGaussianProcess": "learning.learners.gaussian_process",
 }
 """Learners that can be saved, and where they live."""
 _DAMAGE = (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error)
 # what zipfile and NumPy's header parser raise on flipped bits
 _NUMPY_DAMAGE = (NotImplementedError, RuntimeError, KeyError, SyntaxError, TypeError)
+# what settings and arrays of wrong types, shapes and sizes make of a learner
+_WRONG = (KeyError, TypeError, ValueError, IndexError, AttributeError, ArithmeticError, MemoryError)
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +42,8 @@ class SavedModel:
     Attributes
     ----------
     learner
-        Something with ``predict(q)``: configurations (m, n) [rad] to torques (m, n) [N m]; goes on
-        learning with ``partial_fit``.
+        Something with ``predict(q)``: configurations (m, n) [rad] to torques (m, n) [N m]; the
+        online learners go on learning with ``partial_fit``.
     robot, digest : str
         Name and identity of the robot it was learned on.
     joint_names : tuple of str
@@ -65,11 +71,20 @@ def save_model(model: SavedModel, folder: str | Path) -> Path:
     ------
     InputError
         If the learner is of a kind that cannot be saved, or a file cannot be written.
+
+    Notes
+    -----
+    Equal models give equal files, bit for bit, under equal versions of the software: there is no
+    date in them. The JSON holds the digest of its arrays, so that files of two models are not
+    taken for one.
     """
     kind = type(model.learner).__name__
     if kind not in CLASSES:
         raise InputError("model", "learner", kind, f"one of {', '.join(sorted(CLASSES))}")
     directory = Path(folder)
+    archive = io.BytesIO()
+    np.savez(archive, **model.learner.to_arrays())
+    arrays = archive.getvalue()
     document = {
         "schema": SCHEMA,
         "kind": kind,
@@ -77,18 +92,32 @@ def save_model(model: SavedModel, folder: str | Path) -> Path:
         "digest": model.digest,
         "joints": list(model.joint_names),
         "parameters": model.learner.parameters(),
+        "arrays": hashlib.sha256(arrays).hexdigest(),
         "notes": model.notes,
         "versions": software_versions(),
     }
     text = json.dumps(document, indent=1, allow_nan=False) + "\n"
     # the arrays first: a JSON without its arrays would be a broken promise
-    _replace(directory / "model.npz", lambda file: np.savez(file, **model.learner.to_arrays()))
-    _replace(directory / "model.json", lambda file: file.write(text.encode()))
+    _replace(directory / "model.npz", arrays)
+    _replace(directory / "model.json", text.encode())
     return directory / "model.json"
 
 
-def load_model(path: str | Path) -> SavedModel:
+def load_model(path: str | Path, robot: Any = None) -> SavedModel:
     """Read a saved model: its ``model.json``, or the directory that holds it.
+
+    Parameters
+    ----------
+    path
+        The file or directory.
+    robot : Robot, optional
+        The arm, for a ``parametric`` model, which keeps but its name or file; by default it is
+        loaded again from there.
+
+    Returns
+    -------
+    SavedModel
+        Its learner predicts bit for bit what the saved one did.
 
     Raises
     ------
@@ -98,6 +127,30 @@ def load_model(path: str | Path) -> SavedModel:
     file = Path(path)
     if file.is_dir():
         file = file / "model.json"
+    document = _document(file)
+    arrays = _arrays(file.with_suffix(".npz"), document.get("arrays"))
+    kind = getattr(importlib.import_module(CLASSES[document["kind"]]), document["kind"])
+    try:
+        parameters = document["parameters"]
+        if robot is not None and "robot" in parameters["settings"]:
+            settings = {**parameters["settings"], "robot": robot}
+            parameters = {**parameters, "settings": settings}
+        model = SavedModel(
+            kind.from_arrays(arrays, parameters),
+            str(document["robot"]),
+            str(document["digest"]),
+            tuple(document["joints"]),
+            dict(document["notes"]),
+        )
+        _try(model)
+    except _WRONG as error:
+        raise InputError(
+            file, "content", f"damaged ({error})", "a model as it was saved"
+        ) from error
+    return model
+
+
+def _document(file: Path) -> dict[str, Any]:
     try:
         document = json.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
@@ -110,37 +163,41 @@ def load_model(path: str | Path) -> SavedModel:
         raise InputError(file, "schema", document["schema"], f"{SCHEMA} (newer versions read more)")
     if document["kind"] not in CLASSES:
         raise InputError(file, "kind", document["kind"], f"one of {', '.join(sorted(CLASSES))}")
-    arrays = _arrays(file.with_suffix(".npz"))
-    kind = getattr(importlib.import_module(CLASSES[document["kind"]]), document["kind"])
+    return document
+
+
+def _try(model: SavedModel) -> None:
+    """Ask for one torque: arrays that do not fit together say so now, not on the robot."""
+    joints = len(model.joint_names)
+    torque = np.asarray(model.learner.predict(np.zeros((1, joints))))
+    if torque.size != joints or not np.isfinite(torque).all():
+        raise ValueError("its torques are not one finite number per joint")
+
+
+def _arrays(path: Path, digest: object) -> dict[str, np.ndarray]:
     try:
-        learner = kind.from_arrays(arrays, document["parameters"])
-        return SavedModel(
-            learner,
-            str(document["robot"]),
-            str(document["digest"]),
-            tuple(document["joints"]),
-            dict(document["notes"]),
-        )
-    except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise InputError(
-            file, "content", f"damaged ({error})", "a model as it was saved"
-        ) from error
-
-
-def _arrays(path: Path) -> dict[str, np.ndarray]:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(path, "file", error.strerror, "the arrays of a model") from error
+    if digest is not None and hashlib.sha256(content).hexdigest() != digest:
+        found = "damaged, or of another model"
+        raise InputError(path, "content", found, "the arrays that were saved with the JSON")
     try:
         # from memory: NumPy leaves a damaged file open
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
-            return {name: archive[name] for name in archive.files}
-    except (*_DAMAGE, *_NUMPY_DAMAGE) as error:
-        raise InputError(path, "file", "missing or damaged", "the arrays of a model") from error
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+    except (*_DAMAGE, *_NUMPY_DAMAGE, AttributeError) as error:
+        raise InputError(path, "file", "damaged", "the arrays of a model") from error
+    for name, array in arrays.items():
+        if array.dtype.kind == "f" and not np.isfinite(array).all():
+            raise InputError(path, f"array {name!r}", "damaged (not finite)", "finite numbers")
+    return arrays
 
 
-def _replace(path: Path, write: Callable[[Any], Any]) -> None:
+def _replace(path: Path, content: bytes) -> None:
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        with temporary.open("wb") as file:
-            write(file)
+        temporary.write_bytes(content)
         temporary.replace(path)
     except OSError as error:
         temporary.unlink(missing_ok=True)

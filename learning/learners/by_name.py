@@ -1,21 +1,57 @@
-"""The online learners by the names the command line knows."""
+"""The learners by the names the command line knows."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryGroup
 
+FEW, SOME = 18, 30
+"""Hidden units of a network, as in the paper: for two joints or few samples, and otherwise."""
+MANY_SAMPLES = 150
 
-def _local_linear_map(group: SymmetryGroup | None) -> Any:
+
+@dataclass(frozen=True)
+class LearningTask:
+    """What is known of the samples before there are any; decides the settings of batch learners.
+
+    Attributes
+    ----------
+    joints : int
+        Number of joints; 0 where it is not known.
+    samples : int
+        Number of samples to come; 0 where it is not known.
+    noisy : bool
+        Whether the samples have errors that must not be learned.
+    robot : str or None
+        Built-in name or file of the arm, for ``parametric``, which is told the kinematics.
+    snap : bool
+        Whether rounded angles in the robot file are snapped.
+    seed : int
+        Seed of random starts.
+    """
+
+    joints: int = 0
+    samples: int = 0
+    noisy: bool = False
+    robot: str | None = None
+    snap: bool = True
+    seed: int = 0
+
+
+Factory = Callable[[SymmetryGroup | None, LearningTask], Any]
+
+
+def _local_linear_map(group: SymmetryGroup | None, task: LearningTask) -> Any:
     from learning.learners.local_linear_map import LocalLinearMap
 
     return LocalLinearMap(radius=0.15, group=group)
 
 
-def _local_linear_map_it(group: SymmetryGroup | None) -> Any:
+def _local_linear_map_it(group: SymmetryGroup | None, task: LearningTask) -> Any:
     from learning.learners.local_linear_map import LocalLinearMap
 
     return LocalLinearMap(
@@ -28,34 +64,94 @@ def _local_linear_map_it(group: SymmetryGroup | None) -> Any:
     )
 
 
-def _recursive_least_squares(group: SymmetryGroup | None) -> Any:
+def _recursive_least_squares(group: SymmetryGroup | None, task: LearningTask) -> Any:
     from learning.learners.recursive_least_squares import RecursiveLeastSquares
 
     return RecursiveLeastSquares(group=group)
 
 
-ONLINE_LEARNERS: dict[str, Callable[[SymmetryGroup | None], Any]] = {
+def _trigonometric(group: SymmetryGroup | None, task: LearningTask) -> Any:
+    from learning.learners.trigonometric import EquivariantTrigonometric
+
+    return EquivariantTrigonometric(group=group)
+
+
+def _gaussian_process(group: SymmetryGroup | None, task: LearningTask) -> Any:
+    from learning.learners.gaussian_process import SymmetricGaussianProcess
+
+    noise = None if task.noisy else 0.0
+    return SymmetricGaussianProcess(noise, group=group, random_state=task.seed)
+
+
+def _network(group: SymmetryGroup | None, task: LearningTask) -> Any:
+    from learning.learners.network import FeedForwardNetwork
+
+    return FeedForwardNetwork(
+        SOME if task.joints > 2 and task.samples >= MANY_SAMPLES else FEW,
+        validation_fraction=0.15 if task.noisy else 0.0,
+        group=group,
+        random_state=task.seed,
+    )
+
+
+def _parametric(group: SymmetryGroup | None, task: LearningTask) -> Any:
+    from learning.learners.static_regressor import StaticRegressor
+
+    return StaticRegressor(task.robot, snap=task.snap, group=group)
+
+
+ONLINE_LEARNERS: dict[str, Factory] = {
     "local-linear-map": _local_linear_map,
     "local-linear-map-it": _local_linear_map_it,
     "recursive-least-squares": _recursive_least_squares,
 }
-"""Names and factories; every factory takes the group to exploit (None: no symmetries)."""
+"""Learners that take samples one by one (``partial_fit``)."""
 
-EQUIVARIANT_LEARNERS = frozenset({"recursive-least-squares"})
-"""Learners whose predictions obey the relations they exploit exactly."""
+BATCH_LEARNERS: dict[str, Factory] = {
+    "trigonometric": _trigonometric,
+    "gaussian-process": _gaussian_process,
+    "network": _network,
+    "parametric": _parametric,
+}
+"""Learners that are fitted to all samples at once (``fit``)."""
+
+LEARNERS = {**ONLINE_LEARNERS, **BATCH_LEARNERS}
+
+LEADER = "local-linear-map-it"
+"""The online learner that leads an arm where the samples are for a batch learner."""
+
+EQUIVARIANT_LEARNERS = frozenset({"recursive-least-squares", "trigonometric", "network"})
+"""Learners whose predictions obey the relations they exploit exactly, to rounding."""
 
 
-def online_learner(name: str, group: SymmetryGroup | None) -> Any:
-    """Return a fresh online learner.
+def check_learner(name: str) -> str:
+    """Return the name of a learner, checked.
+
+    Raises
+    ------
+    InputError
+        If there is no learner of that name.
+    """
+    if name not in LEARNERS:
+        raise InputError("learner", "name", name, ", ".join(sorted(LEARNERS)))
+    return name
+
+
+def learner_by_name(name: str, group: SymmetryGroup | None, task: LearningTask) -> Any:
+    """Return a fresh learner, with ``fit`` and ``predict``.
 
     Parameters
     ----------
     name
         ``local-linear-map``: Eq. 17-22 as printed. ``local-linear-map-it``: each sample learned
         to convergence, wider kernels and replay. ``recursive-least-squares``: all parameters
-        jointly, on an exactly equivariant basis.
+        jointly, on an exactly equivariant basis. ``trigonometric``: the form of rigid gravity with
+        unknown coefficients. ``gaussian-process``, ``network``: any smooth torque.
+        ``parametric``: masses and first moments of the arm of ``task.robot``.
     group
-        Relations to exploit.
+        Relations to exploit; None: no symmetries.
+    task
+        What is known of the samples.
 
     Raises
     ------
@@ -64,9 +160,25 @@ def online_learner(name: str, group: SymmetryGroup | None) -> Any:
 
     Examples
     --------
+    >>> learner_by_name("network", None, LearningTask(joints=3, samples=300)).hidden
+    30
+    """
+    return LEARNERS[check_learner(name)](group, task)
+
+
+def online_learner(name: str, group: SymmetryGroup | None) -> Any:
+    """Return a fresh learner that takes samples one by one.
+
+    Raises
+    ------
+    InputError
+        If there is no online learner of that name.
+
+    Examples
+    --------
     >>> online_learner("local-linear-map", None).radius
     0.15
     """
     if name not in ONLINE_LEARNERS:
         raise InputError("learner", "name", name, ", ".join(sorted(ONLINE_LEARNERS)))
-    return ONLINE_LEARNERS[name](group)
+    return learner_by_name(name, group, LearningTask())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from typing import Any
 
@@ -28,6 +29,8 @@ class StaticRegressor(RegressorMixin, SavedLearner):
     robot : Robot, str or None
         The arm, a built-in name or a file; its masses are not looked at, only its kinematics and
         gravity. A model can be saved only if it was given as a name or file.
+    snap : bool
+        Whether rounded angles in the file are snapped.
     ridge : float
         Penalty on the squares of the parameters (mass [kg], first moments [kg m]); 0: least
         squares, the smallest parameters where the samples leave some open (most always are:
@@ -73,10 +76,12 @@ class StaticRegressor(RegressorMixin, SavedLearner):
         self,
         robot: Robot | str | None = None,
         *,
+        snap: bool = True,
         ridge: float = 0.0,
         group: GroupArrays | None = None,
     ) -> None:
         self.robot = robot
+        self.snap = snap
         self.ridge = ridge
         self.group = group
 
@@ -151,9 +156,14 @@ class StaticRegressor(RegressorMixin, SavedLearner):
         return {"parameters": self.parameters_.copy()}
 
     def _counters(self) -> dict[str, Any]:
-        return {"rank": int(self.rank_)}
+        return {"rank": int(self.rank_), "kinematics": self._kinematics}
 
     def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
+        if state["kinematics"] != self._kinematics:
+            name = getattr(self.robot, "name", self.robot)
+            raise InputError(
+                "saved model", "robot", f"{name}, of other kinematics", "the arm it was fitted to"
+            )
         self.parameters_, self.rank_ = arrays["parameters"], int(state["rank"])
 
     def _check_parameters(self) -> None:
@@ -162,12 +172,22 @@ class StaticRegressor(RegressorMixin, SavedLearner):
 
     def _start(self, joints: int, outputs: int, flat: bool) -> None:
         """Empty state for ``joints`` inputs and ``outputs`` outputs."""
-        robot = load_robot(self.robot) if not isinstance(self.robot, Robot) else self.robot
+        robot = self.robot
+        if not isinstance(robot, Robot):
+            robot = load_robot(robot, snap=self.snap)
         for field, number in (("X", joints), ("y", outputs)):
             if number != robot.n:
                 raise InputError(field, "number of columns", number, f"{robot.n}, as the robot")
         self._coordinates = SymmetryCoordinates.of(self.group, joints)
-        self._model = robot.model
+        self._model, self._kinematics = robot.model, _kinematics(robot)
         self._flat = flat
         self.n_outputs_ = outputs
         self.n_samples_seen_ = 0
+
+
+def _kinematics(robot: Robot) -> str:
+    """Identity of all that the regressor depends on: everything but the inertias."""
+    tree = robot.tree
+    arrays = (tree.parents, tree.rotations, tree.translations, tree.axes, tree.gravity)
+    packed = b"".join(np.ascontiguousarray(a, dtype="<f8").tobytes() for a in arrays)
+    return hashlib.sha256(packed).hexdigest()

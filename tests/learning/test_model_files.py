@@ -7,10 +7,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.learners.by_name import ONLINE_LEARNERS, online_learner
+from learning.learners.by_name import (
+    LEARNERS,
+    ONLINE_LEARNERS,
+    LearningTask,
+    learner_by_name,
+    online_learner,
+)
 from learning.model_files import SavedModel, load_model, save_model
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryRelation, close
+from symbolic.robots import load_robot
 
 GROUP = close(
     [
@@ -29,6 +36,37 @@ def samples(seed, count):
 def saved(tmp_path, learner):
     save_model(SavedModel(learner, "2r", "c0ffee", ("a", "b"), {"why": "test"}), tmp_path)
     return tmp_path
+
+
+@pytest.mark.parametrize("name", sorted(LEARNERS))
+@given(
+    st.integers(0, 2**16),
+    st.sampled_from([None, GROUP]),
+    st.integers(3, 25),
+    st.booleans(),
+    st.floats(0.01, 100.0),
+)
+@settings(max_examples=5, deadline=None)
+def test_every_learner_predicts_the_same_bits_after_loading(
+    tmp_path_factory, name, seed, group, count, noisy, size
+):
+    q, torque = samples(seed, count)
+    learner = learner_by_name(name, group, LearningTask(2, count, noisy, "2r", seed=seed))
+    quicken(learner)
+    learner.fit(q, size * torque)
+    folder = saved(tmp_path_factory.mktemp("model"), learner)
+    back = load_model(folder).learner
+    asked, _ = samples(seed + 1, 40)
+    np.testing.assert_array_equal(back.predict(asked), learner.predict(asked))
+    # saved again, it is the same model to the last byte
+    content = [(folder / name).read_bytes() for name in ("model.npz", "model.json")]
+    saved(folder, back)
+    assert [(folder / name).read_bytes() for name in ("model.npz", "model.json")] == content
+
+
+def quicken(learner):
+    if hasattr(learner, "trial_iterations"):
+        learner.set_params(hidden=4, restarts=2, trial_iterations=5, iterations=10)
 
 
 @pytest.mark.parametrize("name", sorted(ONLINE_LEARNERS))
@@ -53,6 +91,69 @@ def test_nothing_is_pickled(tmp_path):
     with np.load(tmp_path / "model.npz", allow_pickle=False) as arrays:
         assert all(arrays[name].dtype != object for name in arrays.files)
     json.loads((tmp_path / "model.json").read_text())
+
+
+@pytest.mark.parametrize("name", sorted(LEARNERS))
+@given(st.data())
+@settings(max_examples=10, deadline=None)
+def test_arrays_that_do_not_fit_are_refused_for_every_learner(tmp_path_factory, name, data):
+    learner = learner_by_name(name, GROUP, LearningTask(2, 10, robot="2r"))
+    quicken(learner)
+    learner.fit(*samples(1, 10))
+    folder = saved(tmp_path_factory.mktemp("model"), learner)
+    arrays = dict(np.load(folder / "model.npz"))
+    chosen = data.draw(st.sampled_from(sorted(k for k in arrays if arrays[k].size)))
+    how = data.draw(st.sampled_from(["missing", "text", "NaN"]))
+    if how == "missing":
+        del arrays[chosen]
+        if chosen == "group_basis":  # the group as a whole is optional
+            del arrays["group_A_sat"]
+            return
+    elif how == "text":
+        arrays[chosen] = np.array(["spam"])
+    else:
+        arrays[chosen] = np.full(arrays[chosen].shape, np.nan)
+    np.savez(folder / "model.npz", **arrays)
+    with pytest.raises(InputError, match="another model"):
+        load_model(folder)
+    forget_digest(folder)
+    with pytest.raises(InputError, match="damaged"):
+        load_model(folder)
+
+
+def forget_digest(folder):
+    document = json.loads((folder / "model.json").read_text())
+    del document["arrays"]
+    (folder / "model.json").write_text(json.dumps(document))
+
+
+def test_files_of_two_models_are_not_taken_for_one(tmp_path):
+    for name, seed in (("a", 1), ("b", 2)):
+        (tmp_path / name).mkdir()
+        saved(tmp_path / name, online_learner("local-linear-map", None).fit(*samples(seed, 10)))
+    (tmp_path / "a" / "model.npz").replace(tmp_path / "b" / "model.npz")
+    with pytest.raises(InputError, match="another model"):
+        load_model(tmp_path / "b")
+
+
+def test_a_parametric_model_is_about_one_kinematics(tmp_path):
+    learner = learner_by_name("parametric", None, LearningTask(2, 10, robot="2r"))
+    saved(tmp_path, learner.fit(*samples(1, 10)))
+    q, _ = samples(2, 5)
+    given_arm = load_model(tmp_path, load_robot("2r")).learner
+    np.testing.assert_array_equal(given_arm.predict(q), learner.predict(q))
+    with pytest.raises(InputError, match="kinematics"):
+        load_model(tmp_path, longer_2r(tmp_path))
+
+
+def longer_2r(folder):
+    from importlib.resources import files
+
+    text = files("symbolic").joinpath("robot_files/2r.urdf").read_text()
+    moved = text.replace('<origin xyz="0.25 0 0"', '<origin xyz="0.75 0 0"')
+    assert moved != text
+    (folder / "longer.urdf").write_text(moved)
+    return load_robot(str(folder / "longer.urdf"))
 
 
 def test_a_learner_that_cannot_be_saved_is_refused(tmp_path):
