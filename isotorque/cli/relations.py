@@ -1,58 +1,232 @@
-"""``isotorque relations``: symmetry relations learned from a recording."""
+"""``isotorque relations``: symmetry relations learned from a recording, or tested against it."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from isotorque.cli.options import Json, Quiet
-from isotorque.cli.output import emit_json, say
+from isotorque.cli.output import emit_json, plain, row, say
+
+if TYPE_CHECKING:
+    from learning.recordings.recording_reader import RecordingReader, SettledSamples
+    from learning.relations.candidate_maps import JudgedCandidate
+    from learning.relations.errors_in_variables import MeasurementNoise
+    from learning.relations.learned_symmetries import LearnedSymmetries
+    from symbolic.relations import SymmetryRelation
+
+PHASE = "discovery"
 
 
 def relations(
     run: Annotated[
         Path, typer.Argument(metavar="RUN", help="Directory of a discovery.", show_default=False)
     ],
+    candidates: Annotated[
+        str | None,
+        typer.Option(
+            "--candidates",
+            metavar="FILE|ROBOT|exact",
+            help="Relations to test against the recording: a relations file (.json), or those that "
+            "the geometry of a robot implies; exact: of the robot that RUN names.",
+            show_default=False,
+        ),
+    ] = None,
+    angle_noise: Annotated[
+        float | None,
+        typer.Option(
+            "--angle-noise",
+            metavar="RAD",
+            help="Noise of the angles where known; otherwise the recording tells.",
+            show_default=False,
+        ),
+    ] = None,
+    torque_noise: Annotated[
+        float | None,
+        typer.Option(
+            "--torque-noise",
+            metavar="NM",
+            help="Noise of the torques where known; 0 if only --angle-noise is given.",
+            show_default=False,
+        ),
+    ] = None,
     json: Json = False,
     quiet: Quiet = False,
-) -> None:
-    """Learn (M, N, d) from the settled samples of RUN alone; also written to RUN/relations.json."""
+) -> int:
+    """Learn (M, N, d) from the settled samples of RUN alone; also written to RUN/relations.json.
+
+    With --candidates, relations from another source are tested against the same samples: exit
+    status 1 if one is contradicted.
+    """
     import json as text
 
     from isotorque.cli.files import write_whole
-    from isotorque.cli.output import plain
     from isotorque.experiment import DATABASE
     from learning.recordings.recording_reader import RecordingReader
+    from learning.relations.candidate_maps import judge_candidates
     from learning.relations.relation_learning import learn_relations
+
+    noise = _noise(angle_noise, torque_noise)
+    with RecordingReader(run / DATABASE) as reader:
+        samples, joints = reader.samples(phase=PHASE), reader.joint_names
+        if not len(samples.q):  # not made by `discover`: all that ever rested
+            samples = reader.samples()
+        claims = () if candidates is None else _claims(candidates, reader)
+        limits = _limits(reader)
+    judged = judge_candidates(claims, samples.q, samples.tau, noise=noise)
+    learned = learn_relations(samples.q, samples.tau, noise=noise)
+    document = _document(learned, samples, joints, limits)
+    write_whole(run / "relations.json", text.dumps(plain(document), indent=1) + "\n")
+    if candidates is not None:
+        entries = [_entry(found) for found in judged]
+        document["candidates"] = {"source": candidates, "judged": entries}
+    if json:
+        emit_json(document)
+    else:
+        _print_learned(learned, document)
+        if candidates is not None:
+            _print_judged(judged, candidates)
+        say(f"written: {run / 'relations.json'}", quiet)
+    return int(any(str(found.judgement) == "contradicted" for found in judged))
+
+
+def _noise(angle: float | None, torque: float | None) -> MeasurementNoise | None:
+    from learning.relations.errors_in_variables import MeasurementNoise
+    from symbolic.errors import InputError
+
+    if angle is None and torque is None:
+        return None
+    for option, value in (("--angle-noise", angle), ("--torque-noise", torque)):
+        if value is not None and not (math.isfinite(value) and value >= 0.0):
+            raise InputError("command line", option, value, "a number >= 0")
+    if not (angle or torque):
+        found = "0 everywhere"
+        raise InputError("command line", "noise", found, "one level > 0, or neither option")
+    return MeasurementNoise(angle or 0.0, torque or 0.0)
+
+
+def _claims(source: str, reader: RecordingReader) -> tuple[SymmetryRelation, ...]:
+    """Relations to test: those of a file, or those that a robot's geometry implies."""
+    from symbolic.errors import InputError
+    from symbolic.gravity import GravityModel
+    from symbolic.robots import load_robot
+    from symbolic.symmetries import primary_symmetries
+    from verify.relation_files import load_relations
+
+    if source.endswith(".json"):
+        return load_relations(source, joint_names=reader.joint_names).relations
+    robot = load_robot(reader.robot if source == "exact" else source)
+    if source == "exact" and robot.digest != reader.digest:
+        found = f"{robot.name} (digest {robot.digest[:12]})"
+        accepted = f"the file of the robot recorded (digest {reader.digest[:12]})"
+        raise InputError("command line", "--candidates exact", found, accepted)
+    return tuple(primary_symmetries(GravityModel(robot).potential))
+
+
+def _limits(reader: RecordingReader) -> list[list[float]] | None:
+    """Joint limits of the arm that was recorded, infinite where it has none; None if unknown."""
+    for part in reader.parts:
+        recorded = part.info.options.get("arm", {}).get("limits")
+        if recorded is not None:
+            ends = (-math.inf, math.inf)
+            return [
+                [end if x is None else x for x, end in zip(pair, ends, strict=True)]
+                for pair in recorded
+            ]
+    return None
+
+
+def _document(
+    learned: LearnedSymmetries,
+    samples: SettledSamples,
+    joints: Sequence[str],
+    limits: list[list[float]] | None,
+) -> dict[str, Any]:
+    from learning.relations.executable import is_executable
     from verify.relation_files import relations_document
 
-    with RecordingReader(run / DATABASE) as reader:
-        samples = reader.samples(phase="discovery")
-        joints = reader.joint_names
-    learned = learn_relations(samples.q, samples.tau)
     extra = [
         {
             "known": str(entry.known),
+            "executable": None if limits is None else is_executable(entry.relation, limits),
             "standard_error": plain(entry.standard_error),
             "support": entry.support,
             "p_value": plain(entry.p_value),
+            "regression": _regression(entry.regression),
         }
         for entry in learned.relations
     ]
-    document = relations_document(learned.group, joints, extra=extra) | {
+    return relations_document(learned.group, joints, extra=extra) | {
         "method": learned.method,
         "missing": learned.missing,
         "samples": len(samples.q),
+        "torques": int(samples.torque_groups().max(initial=-1)) + 1,
+        "secondary_pairs": [
+            {"Y": plain(pairs.Y), "pairs": len(pairs), "torques": len(set(pairs.torque_index))}
+            for pairs in learned.rejected
+        ],
+        "contradicted": [
+            {"A": plain(r.A), "d": plain(r.d), "Y": plain(r.Y), "support": entry.support}
+            for entry in learned.contradicted
+            for r in [entry.relation]
+        ],
     }
-    write_whole(run / "relations.json", text.dumps(plain(document), indent=1) + "\n")
-    if json:
-        emit_json(document)
-        return
-    print(f"{learned.order} relations from {len(samples.q)} settled samples, by {learned.method}")
-    for entry in learned.relations:
-        print(f"  {entry.relation}  [{entry.known}, {entry.support} torques]")
+
+
+def _regression(found: Any) -> dict[str, Any] | None:
+    """Return the free regression of a relation: M q_r + N q_s = d with real numbers."""
+    if found is None:
+        return None
+    names = ("M", "N", "d", "A_error", "d_error", "pairs")
+    return {name: plain(getattr(found, name)) for name in names}
+
+
+def _entry(found: JudgedCandidate) -> dict[str, Any]:
+    relation = found.relation
+    return {
+        "A": relation.A,
+        "d": relation.d,
+        "Y": relation.Y,
+        "judgement": str(found.judgement),
+        "p_value": found.p_value,
+        "bound": relation.bound,
+        "reason": found.reason,
+    }
+
+
+def _print_learned(learned: LearnedSymmetries, document: dict[str, Any]) -> None:
+    print(f"{learned.order} relations from {document['samples']} settled samples, ", end="")
+    print(f"by {learned.method}")
+    for entry, said in zip(learned.relations, document["relations"], strict=True):
+        how = f"{entry.known}, {entry.support} torques"
+        if said["executable"] is False:
+            how += ", not executable within the joint limits"
+        print(f"  {entry.relation}  [{how}]")
+    for kind in document["secondary_pairs"]:
+        print(
+            f"{kind['pairs']} pairs of {kind['torques']} torques obey none of them "
+            f"(secondary), Y = {row(kind['Y'])}"
+        )
+    for entry in learned.contradicted:
+        print(f"pairs suggest, other samples contradict: {entry.relation}")
     if learned.missing:
         print(f"missing: {learned.missing}")
-    say(f"written: {run / 'relations.json'}", quiet)
+
+
+def _print_judged(judged: tuple[JudgedCandidate, ...], source: str) -> None:
+    kinds = [str(found.judgement) for found in judged]
+    print(
+        f"{len(judged)} candidates from {source}: {kinds.count('consistent')} consistent, ", end=""
+    )
+    print(f"{kinds.count('contradicted')} contradicted", end="")
+    print(f", {sum(kind.startswith('untestable') for kind in kinds)} untestable with this data")
+    for found, kind in zip(judged, kinds, strict=True):
+        known = "" if math.isnan(found.p_value) else f", p = {found.p_value:.3g}"
+        if math.isfinite(found.relation.bound.max(initial=0.0)):
+            known += f", wrong by at most {row(found.relation.bound, 3)} N m"
+        reason = f"; needs {found.reason}" if found.reason else ""
+        print(f"  {found.relation}  [{kind}{known}{reason}]")

@@ -17,6 +17,7 @@ from learning.relations.identification import BOUND_DEVIATIONS, LARGEST_ERROR, S
 from learning.relations.potential_fit import FittedPotential, quantile, tail_probability
 from learning.relations.samples import static_samples
 from learning.relations.silent_joints import fit_on_active_joints
+from learning.relations.wanted_samples import wanted_samples
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryRelation
 
@@ -134,8 +135,7 @@ def _judged(relation: SymmetryRelation, fit: FittedPotential) -> JudgedCandidate
     acting = typical > 0.0
     excess = float((rms[0, acting] / typical[acting]).max(initial=0.0)) / LARGEST_ERROR
     if excess > 1.0:
-        more = max(1, int(np.ceil(fit.samples * (excess**2 - 1.0))))
-        reason = f"about {more} more samples: a violation could hide in the noise"
+        reason = f"{wanted_samples(fit.samples, excess)}: a violation could hide in the noise"
         return JudgedCandidate(bounded, Judgement.UNTESTABLE, p_value, reason)
     return JudgedCandidate(bounded, Judgement.CONSISTENT, p_value)
 

@@ -48,8 +48,8 @@ def torque_features(frequencies: Frequencies, q: Array) -> Array:
     return np.concatenate([-np.sin(phase)[:, None] * k, np.cos(phase)[:, None] * k], axis=2)
 
 
-def solve(design: Array, target: Array) -> Array:
-    """Least squares, columns scaled to one size.
+def solve(design: Array, target: Array, equations: int = 1) -> Array:
+    """Least squares, columns scaled to one size; every sample gives so many equations.
 
     Raises
     ------
@@ -57,13 +57,15 @@ def solve(design: Array, target: Array) -> Array:
         If the columns are linearly dependent.
     """
     size = np.linalg.norm(design, axis=0)
-    if (size > 0.0).all():
-        solution, _, _, singular = np.linalg.lstsq(design / size, target, rcond=None)
-        if singular[-1] > DEPENDENT * singular[0]:
-            return np.asarray(solution / size)
+    size = np.where(size > 0.0, size, 1.0)
+    solution, _, _, singular = np.linalg.lstsq(design / size, target, rcond=None)
+    open_ones = int((singular <= DEPENDENT * singular[0]).sum())
+    if not open_ones:
+        return np.asarray(solution / size)
     raise Undetermined(
-        "samples in general position: the given configurations leave combinations of the "
-        "coefficients open (a joint that never moved, or a torque that was always the same)"
+        f"at least {-(-open_ones // equations)} more samples in general position: the given "
+        f"configurations leave {open_ones} combinations of the coefficients open (a joint that "
+        "never moved, or a torque that was always the same)"
     )
 
 
@@ -112,7 +114,7 @@ def weighted_fit(
         target = tau - np.einsum("Nij,Nj->Ni", stiffness, q - true_q)
         design = np.linalg.solve(cholesky, features).reshape(-1, features.shape[2])
         white = np.linalg.solve(cholesky, target[:, :, None])[:, :, 0].ravel()
-        previous, estimate = estimate, solve(design, white)
+        previous, estimate = estimate, solve(design, white, q.shape[1])
         residual = white - design @ estimate
         squares = float(residual @ residual)
         spread = float(np.sqrt(squares / max(1, white.size - design.shape[1])))

@@ -13,6 +13,10 @@ from symbolic.relations import SymmetryRelation
 
 Array = NDArray[np.float64]
 
+TURN = 2.0 * np.pi
+SLACK = 1e-9
+"""Configurations this little beyond a limit are at it [rad]."""
+
 
 def is_executable(relation: SymmetryRelation, limits: ArrayLike) -> bool:
     """Say whether some configuration within the limits has its image within the limits.
@@ -21,7 +25,7 @@ def is_executable(relation: SymmetryRelation, limits: ArrayLike) -> bool:
     ----------
     relation : SymmetryRelation
     limits : (n, 2) array_like
-        Lower and upper limit of each joint [rad].
+        Lower and upper limit of each joint [rad]; infinite where it has none.
 
     Returns
     -------
@@ -38,7 +42,7 @@ def is_executable(relation: SymmetryRelation, limits: ArrayLike) -> bool:
     Notes
     -----
     One linear feasibility problem for each vector of full turns that the ranges of A q + d leave
-    possible.
+    possible. A joint that can make a full turn reaches every angle: its image restrains nothing.
 
     Examples
     --------
@@ -51,20 +55,27 @@ def is_executable(relation: SymmetryRelation, limits: ArrayLike) -> bool:
         raise InputError("executable", "shape of limits", box.shape, f"({relation.n}, 2)")
     if not (box[:, 0] <= box[:, 1]).all():
         raise InputError("executable", "limits", box.tolist(), "lower <= upper [rad]")
-    A, d = relation.A, relation.d
-    low, high = box.T
-    reach = np.sort(np.stack([A * low, A * high]), axis=0).sum(axis=2) + d
-    turn = 2.0 * np.pi
-    first = np.ceil((low - reach[1]) / turn - 1e-9).astype(int)
-    last = np.floor((high - reach[0]) / turn + 1e-9).astype(int)
+    narrow = box[:, 1] - box[:, 0] < TURN - SLACK
+    box = _one_turn(box)
+    A, d, (low, high) = relation.A[narrow], relation.d[narrow], box[narrow].T
+    reach = np.sort(np.stack([A * box[:, 0], A * box[:, 1]]), axis=0).sum(axis=2) + d
+    first = np.ceil((low - reach[1] - SLACK) / TURN).astype(int)
+    last = np.floor((high - reach[0] + SLACK) / TURN).astype(int)
     for turns in itertools.product(*map(range, first, last + 1)):
-        shift = d + turn * np.array(turns)
+        shift = d + TURN * np.array(turns)
         found = linprog(
             np.zeros(relation.n),
             A_ub=np.concatenate([A, -A]),
-            b_ub=np.concatenate([high - shift, shift - low]) + 1e-9,
+            b_ub=np.concatenate([high - shift, shift - low]) + SLACK,
             bounds=box,
         )
         if found.status == 0:
             return True
     return False
+
+
+def _one_turn(limits: Array) -> Array:
+    """Limits (n, 2) with one full turn where an end is missing: other turns say the same."""
+    low, high = limits.T
+    low = np.where(np.isfinite(low), low, np.where(np.isfinite(high), high - TURN, -np.pi))
+    return np.stack([low, np.where(np.isfinite(high), high, low + TURN)], axis=1)

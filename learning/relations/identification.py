@@ -15,6 +15,7 @@ from learning.relations.offset_snapping import snapped_offsets
 from learning.relations.potential_fit import FittedPotential, present_frequencies, quantile
 from learning.relations.samples import static_samples
 from learning.relations.silent_joints import fit_on_active_joints
+from learning.relations.wanted_samples import wanted_samples
 from symbolic.relations import SymmetryGroup, identity
 
 Array = NDArray[np.float64]
@@ -150,9 +151,8 @@ def claim(
     excess = float((rms / np.where(size > 0.0, size, np.inf))[:, involved].max(initial=0.0))
     excess /= LARGEST_ERROR
     if excess > 1.0:
-        more = int(np.ceil(fit.samples * (excess**2 - 1.0)))
         missing = (
-            f"about {max(1, more)} more samples: relations could still be wrong by "
+            f"{wanted_samples(fit.samples, excess)}: relations could still be wrong by "
             f"{100.0 * LARGEST_ERROR * excess:.2g} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
             "are allowed"
         )

@@ -16,6 +16,7 @@ from learning.relations.relation_group import Refinement, completed, find_orbits
 from learning.relations.row_votes import Tolerance, voted_relations
 from learning.relations.silent_joints import active_joints, fit_on_active_joints, never_moved
 from learning.relations.torque_pairs import Pairs, TorqueGroups, group_by_torque, pairs_by_signs
+from learning.relations.wanted_samples import no_torque
 from symbolic.relations import wrap
 
 Array = NDArray[np.float64]
@@ -105,7 +106,7 @@ def search_pairs(
     """
     active = active_joints(tau, noise)
     if not active.any():
-        raise Undetermined("samples with a torque: all given torques are zero")
+        raise Undetermined(no_torque(*tau.shape))
     same = SAME_TORQUE * float(np.abs(tau).max())
     same = max(same, 6.0 * noise.torque if noise else 0.0)
     groups = group_by_torque(q[:, active], tau[:, active], same, SMALLEST_SHARE)

@@ -167,7 +167,7 @@ def fit_potential(
     q, tau = q[:, touched], tau[:, touched]
     features = torque_features(frequencies, q)
     largest = max(float(np.abs(tau).max()), 1e-300)
-    start = solve(features.reshape(-1, unknowns), tau.ravel())
+    start = solve(features.reshape(-1, unknowns), tau.ravel(), equations)
     if noise is not None:
         floor = MeasurementNoise(noise.angle, float(np.hypot(noise.torque, ROUNDING * largest)))
         estimate, root, _ = weighted_fit(q, tau, frequencies, start, floor)

@@ -95,13 +95,17 @@ def learn_relations(
     except Undetermined as lacking:
         if identified.order > 1 or identified.missing is None:
             return identified
-        return dataclasses.replace(
-            identified, missing=f"{identified.missing}; for pairing: {lacking}", method=METHOD
-        )
+        missing = _both(identified.missing, str(lacking))
+        return dataclasses.replace(identified, missing=missing, method=METHOD)
     paired = learned_from_pairs(pairs, snap)
     if identified.missing is not None and identified.order == 1:
         return _pairs_first(pairs, paired, identified)
     return _joined(pairs, paired, identified, snap)
+
+
+def _both(missing: str | None, for_pairing: str) -> str:
+    """What each method lacks; once where it is the same."""
+    return for_pairing if missing == for_pairing else f"{missing}; for pairing: {for_pairing}"
 
 
 def _noise_of_pairs(
@@ -144,7 +148,7 @@ def _pairs_first(
     """Pairing's result where identification could not decide; a fit may still contradict."""
     missing = identified.missing
     if paired.order == 1:
-        missing = f"{missing}; for pairing: {nothing_stands_out(pairs)}"
+        missing = _both(missing, nothing_stands_out(pairs))
     fit = identified.fit
     if fit is not None and paired.order > 1:
         whole = fit_group(fit, _candidates(list(paired.group)))

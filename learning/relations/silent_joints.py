@@ -12,6 +12,7 @@ from learning.relations.potential_fit import (
     fit_potential,
     present_frequencies,
 )
+from learning.relations.wanted_samples import no_torque, wanted_samples
 from symbolic.relations import wrap
 
 Array = NDArray[np.float64]
@@ -56,7 +57,7 @@ def fit_on_active_joints(
     """
     active = active_joints(tau, noise)
     if not active.any():
-        raise Undetermined("samples with a torque: all given torques are zero")
+        raise Undetermined(no_torque(*tau.shape))
     while True:
         fit = fit_potential(q, tau, all_frequencies(q.shape[1], active), noise)
         involved, unmoved = silent_dependence(q, tau, fit, active, largest_error, noise)
@@ -120,10 +121,9 @@ def depends_on_joint(
     doubt = np.sqrt(0.5 * (3.0 * error) ** 2 @ wider.frequencies[added].astype(float) ** 2).max()
     excess = float(doubt / (largest_error * np.sqrt(np.mean(tau**2))))
     if excess > 1.0:
-        more = int(np.ceil(wider.samples * (excess**2 - 1.0)))
         raise Undetermined(
-            f"about {more} more samples: whether the torque depends on joint {joint + 1}, whose "
-            "own torque was always zero, is lost in the noise"
+            f"{wanted_samples(wider.samples, excess)}: whether the torque depends on joint "
+            f"{joint + 1}, whose own torque was always zero, is lost in the noise"
         )
     return False
 

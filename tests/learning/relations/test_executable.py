@@ -57,3 +57,15 @@ def test_bad_limits_are_refused():
         is_executable(relation, [[0.0, 1.0]])
     with pytest.raises(InputError, match="lower <= upper"):
         is_executable(relation, [[1.0, 0.0], [0.0, 1.0]])
+
+
+@pytest.mark.parametrize("name", ["3r", "ur5"])
+def test_a_missing_limit_is_a_full_turn(name):
+    _, group = known_potential(name)
+    rng = np.random.default_rng(0)
+    middle = rng.uniform(-1, 1, group.n)
+    limits = np.stack([middle - 0.6, middle + 0.6], axis=1)
+    for open_end in ([-np.inf, np.inf], [-1.0, np.inf], [-np.inf, 2.0], [-9.0, 9.0]):
+        missing, turn = limits.copy(), limits.copy()
+        missing[1], turn[1] = open_end, [-np.pi, np.pi]
+        assert [is_executable(r, missing) for r in group] == [is_executable(r, turn) for r in group]
