@@ -40,3 +40,11 @@ def test_derive_own_urdf_with_a_file_of_the_user(capsys, monkeypatch, tmp_path):
 def test_derive_own_urdf_names_a_missing_file(capsys, monkeypatch, tmp_path):
     with pytest.raises(ValueError, match="nowhere"):
         output_of("derive_own_urdf.py", capsys, monkeypatch, tmp_path / "nowhere.urdf")
+
+
+def test_export_model_writes_c_that_says_what_it_is(capsys, monkeypatch, tmp_path):
+    source = tmp_path / "gravity.c"
+    lines = output_of("export_model.py", capsys, monkeypatch, source).splitlines()
+    assert lines[0] == "learned: tanh units with 58 numbers"
+    assert lines[2].endswith("equals predict: True")
+    assert "Learned by FeedForwardNetwork on 2r" in source.read_text()

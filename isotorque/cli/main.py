@@ -12,6 +12,7 @@ from isotorque.cli import (
     derive,
     discover,
     domain,
+    export,
     learn,
     relations,
     robots,
@@ -43,6 +44,7 @@ app.command("relations")(relations.relations)
 app.command("learn")(learn.learn)
 app.command("verify")(verify.verify)
 app.command("run")(run_command.run)
+app.command("export")(export.export)
 
 
 def run(arguments: list[str] | None = None) -> NoReturn:

@@ -47,6 +47,11 @@ class CanonicalFold:
         self._group = symmetry_group(group)
         self._domain = FundamentalDomain(self._group)
 
+    @property
+    def domain(self) -> FundamentalDomain:
+        """The fundamental domain."""
+        return self._domain
+
     def fold(self, q: Array) -> tuple[Array, Array, Array]:
         """Fold configurations (m, n) [rad].
 

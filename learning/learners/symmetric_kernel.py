@@ -138,14 +138,14 @@ class SymmetrisedPeriodicKernel(Kernel):
 
     def _circles(self, y: Array) -> Array:
         """Coordinates on the circles of every row a, (..., 2 rows)."""
-        rows, weights = _distinct_rows(self.coordinates.A_sat)
+        rows, weights = distinct_rows(self.coordinates.A_sat)
         phase = y @ rows.T
         return np.asarray(np.sqrt(np.tile(weights, 2))) * np.concatenate(
             [np.cos(phase), np.sin(phase)], axis=-1
         )
 
 
-def _distinct_rows(A_sat: Array) -> tuple[Array, Array]:
+def distinct_rows(A_sat: Array) -> tuple[Array, Array]:
     """Rows of all A_sat, one of each pair +-a, and their weights, which sum to the rank."""
     rows = A_sat.reshape(-1, A_sat.shape[-1])
     first = (np.abs(rows) > 1e-9).argmax(axis=1)

@@ -1,0 +1,170 @@
+"""``isotorque export``: a learned or analytic model for a controller."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from isotorque.cli.options import Json, NoSnap, Quiet
+from isotorque.cli.output import emit_json, say
+
+if TYPE_CHECKING:
+    from learning.export.torque_form import TorqueForm
+
+
+def export(
+    model: Annotated[
+        str,
+        typer.Argument(
+            metavar="MODEL",
+            help="A model.json, the directory of a run, or a robot (its analytic gravity).",
+            show_default=False,
+        ),
+    ],
+    c: Annotated[
+        Path | None, typer.Option("--c", metavar="FILE", help="Write C source.", show_default=False)
+    ] = None,
+    casadi: Annotated[
+        Path | None,
+        typer.Option(
+            "--casadi", metavar="FILE", help="Save a CasADi function.", show_default=False
+        ),
+    ] = None,
+    npz: Annotated[
+        Path | None,
+        typer.Option(
+            "--npz",
+            metavar="FILE.npz",
+            help="Write plain arrays, and FILE.json beside them that says what they are.",
+            show_default=False,
+        ),
+    ] = None,
+    no_snap: NoSnap = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a torque map as C source, as a CasADi function, as arrays; checked each time."""
+    from isotorque.cli.files import write_whole
+    from symbolic.errors import InputError
+
+    if c is casadi is npz is None:
+        raise InputError("command line", "output", "none", "--c, --casadi or --npz with a file")
+    described = None
+    if npz is not None:
+        if npz.suffix != ".npz":
+            raise InputError("command line", "--npz", npz, "a file that ends in .npz")
+        described = npz.with_suffix(".json")
+        _keep_others(described)
+    saved = Path(model)
+    exported = (
+        _learned(saved) if saved.is_dir() or saved.suffix == ".json" else _analytic(model, no_snap)
+    )
+    written: dict[str, Path] = {}
+    if c is not None:
+        write_whole(c, exported.c_source())
+        written["c"] = c
+    if casadi is not None:
+        write_whole(casadi, exported.casadi_function().serialize())
+        written["casadi"] = casadi
+    if npz is not None and described is not None:
+        from learning.export.array_files import export_bytes
+
+        arrays, document = export_bytes(
+            exported.form, exported.robot, exported.digest, exported.joints
+        )
+        write_whole(npz, arrays)
+        write_whole(described, document)
+        written |= {"npz": npz, "json": described}
+    if json:
+        emit_json(
+            {
+                "model": model,
+                "robot": exported.robot,
+                "joints": exported.joints,
+                "kind": exported.form.KIND,
+                **{kind: str(path) for kind, path in written.items()},
+                "max_error": exported.error,
+            }
+        )
+        return
+    for path in written.values():
+        say(f"written: {path}", quiet)
+    say(f"largest difference from the model: {exported.error:.3g} N m", quiet)
+
+
+@dataclass(frozen=True, eq=False)
+class _Export:
+    """What is to be written, and how far it is from the model on random configurations [N m]."""
+
+    form: TorqueForm
+    robot: str
+    digest: str
+    joints: tuple[str, ...]
+    error: float
+    gravity: Any = None
+    about: tuple[str, ...] = ()
+
+    def c_source(self) -> str:
+        if self.gravity is not None:
+            from symbolic.gravity_c import gravity_c
+
+            return gravity_c(self.gravity)
+        from learning.export.c_export import c_source
+
+        return c_source(self.form, self.about, self.joints)
+
+    def casadi_function(self) -> Any:
+        if self.gravity is not None:
+            from symbolic.gravity_casadi import gravity_casadi
+
+            return gravity_casadi(self.gravity)
+        from learning.export.casadi_export import casadi_function
+
+        return casadi_function(self.form)
+
+
+def _learned(path: Path) -> _Export:
+    from learning.export.from_learner import torque_form
+    from learning.export.torque_form import largest_difference
+    from learning.model_files import load_model
+
+    saved = load_model(path)
+    form = torque_form(saved.learner)
+    about = (
+        f"Inverse statics of {saved.robot}, learned and written by Isotorque.",
+        f"Learner {type(saved.learner).__name__}; robot {saved.digest}.",
+    )
+    return _Export(
+        form,
+        saved.robot,
+        saved.digest,
+        saved.joint_names,
+        largest_difference(form, saved.learner.predict),
+        about=about,
+    )
+
+
+def _analytic(name: str, no_snap: bool) -> _Export:
+    from learning.export.torque_form import largest_difference
+    from learning.export.waves import Waves
+    from symbolic.gravity import GravityModel
+    from symbolic.robots import load_robot
+
+    robot = load_robot(name, snap=not no_snap)
+    gravity = GravityModel(robot)
+    potential = gravity.significant_potential.to_float()
+    form = Waves.of_potential(potential.frequencies, potential.cos, potential.sin)
+    error = largest_difference(form, gravity.torque)
+    return _Export(form, robot.name, robot.digest, tuple(robot.joint_names), error, gravity)
+
+
+def _keep_others(path: Path) -> None:
+    """Refuse to replace a JSON file that is no export, such as the model itself."""
+    from learning.export.array_files import FORMAT
+    from symbolic.errors import InputError
+
+    if path.exists() and FORMAT not in path.read_text(encoding="utf-8", errors="replace")[:200]:
+        raise InputError(path, "file", "there already, and no export", "another name for --npz")

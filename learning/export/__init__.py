@@ -1,0 +1,1 @@
+"""Learned models for controllers: C source, CasADi functions, plain arrays."""

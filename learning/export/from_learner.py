@@ -1,0 +1,169 @@
+"""The torque form of every learner."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from learning.export.copies import Copies
+from learning.export.folded_copy import FoldedCopy
+from learning.export.kernels import Kernels
+from learning.export.local_functions import LocalFunctions
+from learning.export.tanh_units import TanhUnits
+from learning.export.torque_form import TorqueForm
+from learning.export.waves import Waves
+from learning.learners.dictionary_learner import DictionaryLearner
+from learning.learners.gaussian_process import SymmetricGaussianProcess
+from learning.learners.local_linear_map import LocalLinearMap
+from learning.learners.network import FeedForwardNetwork
+from learning.learners.recursive_least_squares import RecursiveLeastSquares
+from learning.learners.sample_checks import fitted
+from learning.learners.static_regressor import StaticRegressor
+from learning.learners.symmetric_kernel import distinct_rows
+from learning.learners.trigonometric import EquivariantTrigonometric
+from symbolic.errors import InputError
+
+MOST_JOINTS = 10  # 3^n torques make the waves of a static regressor
+
+
+def torque_form(learner: Any) -> TorqueForm:
+    """Write what a learner predicts as constant tables and one formula.
+
+    Parameters
+    ----------
+    learner
+        A fitted learner of this package. Of a `DictionaryLearner` the regressor in it counts.
+
+    Returns
+    -------
+    TorqueForm
+        `Waves`, `TanhUnits`, `Kernels` or `LocalFunctions`.
+
+    Raises
+    ------
+    InputError
+        If it is of another kind or not fitted, or if a static regressor has more than 10 joints.
+
+    Examples
+    --------
+    >>> from learning.export.torque_form import evaluate
+    >>> q = np.linspace(-3.0, 3.0, 9)[:, None]
+    >>> pendulum = EquivariantTrigonometric().fit(q, 5.0 * np.cos(q))
+    >>> form = torque_form(pendulum)
+    >>> bool(np.abs(evaluate(form, q) - 5.0 * np.cos(q)).max() < 1e-12)
+    True
+    """
+    for kind, convert in CONVERSIONS.items():
+        if isinstance(learner, kind):
+            fitted(learner)
+            return convert(learner)
+    accepted = ", ".join(kind.__name__ for kind in CONVERSIONS)
+    raise InputError("export", "learner", type(learner).__name__, f"one of {accepted}")
+
+
+def _trigonometric(learner: EquivariantTrigonometric) -> Waves:
+    arrays = learner.to_arrays()
+    a, b = np.split(arrays["coefficients"], 2)
+    if learner.potential:
+        return Waves.of_potential(arrays["frequencies"], a[:, 0], b[:, 0])
+    return Waves(np.rint(arrays["frequencies"]).astype(np.int64), a, b).without_rounding()
+
+
+def _static_regressor(learner: StaticRegressor) -> Waves:
+    n = learner.n_features_in_
+    if n > MOST_JOINTS:
+        raise InputError("export", "number of joints", n, f"at most {MOST_JOINTS}")
+    angles = np.meshgrid(*[2 * np.pi / 3 * np.arange(3)] * n, indexing="ij")
+    q = np.stack(angles, axis=-1).reshape(-1, n)
+    return Waves.of_samples_on_grid(learner.predict(q).reshape(*[3] * n, n))
+
+
+def _network(learner: FeedForwardNetwork) -> TanhUnits:
+    arrays, group = learner.to_arrays(), learner._coordinates
+    periodic = learner.inputs == "sincos"
+    outputs = learner.n_outputs_
+    copies: Copies | FoldedCopy
+    if learner.symmetries == "canonical" and learner.group is not None:
+        assert learner._inputs.fold is not None
+        copies = FoldedCopy.of_domain(learner._inputs.fold.domain)
+    elif learner.symmetries == "averaged":
+        copies = Copies.of_group(group, outputs, wrapped=not periodic)
+    else:
+        copies = Copies.plain(group.basis, outputs, wrapped=not periodic)
+    hidden, output = learner._layer.split(arrays["weights"])
+    return TanhUnits(copies, periodic, hidden, output * arrays["scale"][:, None])
+
+
+def _gaussian_process(learner: SymmetricGaussianProcess) -> Kernels:
+    arrays, group = learner.to_arrays(), learner._coordinates
+    lengths, weights = [], []
+    for process in learner.processes_:
+        found = process.kernel_.get_params()
+        periodic = next(v for k, v in found.items() if k.endswith("length_scale"))
+        amplitude = next(v for k, v in found.items() if k.endswith("constant_value"))
+        lengths.append(float(periodic))
+        weights.append(amplitude * process.alpha_.ravel())
+    rows, shares = distinct_rows(group.A_sat)
+    radii = np.sqrt(shares)
+    phase = arrays["q"] @ group.basis.T @ rows.T
+    centres = np.concatenate([radii * np.cos(phase), radii * np.sin(phase)], axis=1)
+    return Kernels(
+        Copies.of_group(group, learner.n_outputs_),
+        rows,
+        radii,
+        centres,
+        np.array(weights).T * arrays["scale"],
+        np.array(lengths),
+    )
+
+
+def _local_linear_map(learner: LocalLinearMap) -> LocalFunctions:
+    group = learner._coordinates
+    kernel = learner.kernel_width * learner.radius
+    return LocalFunctions.around(
+        Copies.plain(group.basis, learner.n_outputs_, wrapped=True),
+        learner.prototypes_,
+        group.isometry,
+        np.concatenate([learner.offsets_[:, :, None], learner.slopes_], axis=2),
+        float(learner.radius),
+        float(kernel),
+        float(learner.cutoff * kernel),
+        bool(learner._grid.start.size),
+    )
+
+
+def _recursive_least_squares(learner: RecursiveLeastSquares) -> LocalFunctions:
+    group = learner._coordinates
+    values = np.empty((learner.n_prototypes_, learner.n_outputs_, 1 + group.rank))
+    for joints, solution in zip(learner._classes, learner._solve(), strict=True):
+        shape = (len(values), values.shape[2], len(joints))
+        values[:, joints] = solution.reshape(shape).transpose(0, 2, 1)
+    kernel = learner.kernel_width * learner.radius
+    return LocalFunctions.around(
+        Copies.of_group(group, learner.n_outputs_, wrapped=True),
+        learner.prototypes_,
+        group.isometry,
+        values,
+        float(learner.radius),
+        float(kernel),
+        float(learner.cutoff * kernel),
+        bool(learner._grid.start.size),
+    )
+
+
+def _dictionary(learner: DictionaryLearner) -> TorqueForm:
+    learner.predict(np.zeros((1, learner.n_features_in_)))  # fits anew where samples have come
+    return torque_form(learner.regressor_)
+
+
+CONVERSIONS: dict[type, Any] = {
+    EquivariantTrigonometric: _trigonometric,
+    StaticRegressor: _static_regressor,
+    FeedForwardNetwork: _network,
+    SymmetricGaussianProcess: _gaussian_process,
+    LocalLinearMap: _local_linear_map,
+    RecursiveLeastSquares: _recursive_least_squares,
+    DictionaryLearner: _dictionary,
+}
+"""Learners that can be exported."""

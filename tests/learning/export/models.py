@@ -1,0 +1,65 @@
+"""Fitted learners of every kind, small enough to be fitted in tests."""
+
+import numpy as np
+
+from learning.learners.dictionary_learner import DictionaryLearner
+from learning.learners.gaussian_process import SymmetricGaussianProcess
+from learning.learners.local_linear_map import LocalLinearMap
+from learning.learners.network import FeedForwardNetwork
+from learning.learners.recursive_least_squares import RecursiveLeastSquares
+from learning.learners.static_regressor import StaticRegressor
+from learning.learners.trigonometric import EquivariantTrigonometric
+from symbolic.gravity import GravityModel
+from symbolic.robots import load_robot
+from symbolic.symmetries import primary_symmetries
+
+QUICK = {"restarts": 1, "iterations": 10, "trial_iterations": 5}
+#: Learners by name: from a robot's name and its group.
+MAKERS = {
+    "local-linear-map": lambda robot, group: LocalLinearMap(0.3, group=group),
+    "local-linear-map-it": lambda robot, group: LocalLinearMap(
+        0.5, kernel_width=2.5, inner_iterations=None, group=group
+    ),
+    "recursive-least-squares": lambda robot, group: RecursiveLeastSquares(group=group),
+    "averaged": lambda robot, group: FeedForwardNetwork(8, group=group, **QUICK),
+    "augmented": lambda robot, group: FeedForwardNetwork(
+        8, symmetries="augmented", inputs="raw", group=group, **QUICK
+    ),
+    "canonical": lambda robot, group: FeedForwardNetwork(
+        8, symmetries="canonical", group=group, **QUICK
+    ),
+    "canonical raw": lambda robot, group: FeedForwardNetwork(
+        8, symmetries="canonical", inputs="raw", group=group, **QUICK
+    ),
+    "trigonometric": lambda robot, group: EquivariantTrigonometric(group=group),
+    "joint by joint": lambda robot, group: EquivariantTrigonometric(False, group=group),
+    "gaussian-process": lambda robot, group: SymmetricGaussianProcess(
+        length_scale=2.0, group=group
+    ),
+    "parametric": lambda robot, group: StaticRegressor(robot),
+    "dictionary": lambda robot, group: DictionaryLearner(
+        EquivariantTrigonometric(group=group), budget=30, group=group
+    ),
+}
+TIED = [name for name in MAKERS if name not in ("parametric",)]
+
+
+def samples(robot, count, seed=0):
+    """Configurations [rad] and exact torques [N m]."""
+    gravity = GravityModel(load_robot(robot))
+    q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (count, gravity.n))
+    return q, gravity.torque(q)
+
+
+def fitted_learner(name, robot="2r", symmetric=True, count=60):
+    """One of `MAKERS`, fitted, with or without the robot's group."""
+    group = primary_symmetries(GravityModel(load_robot(robot)).potential) if symmetric else None
+    q, torque = samples(robot, count)
+    return MAKERS[name](robot, group).fit(q, torque)
+
+
+def far_queries(joints, count=40):
+    """Configurations beyond one turn, some on angles that are special."""
+    rng = np.random.default_rng(1)
+    q = rng.uniform(-7.0, 7.0, (count, joints))
+    return np.concatenate([q, 0.3 + 1e-3 * rng.normal(size=(4, joints))])

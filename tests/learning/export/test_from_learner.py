@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sklearn.linear_model import LinearRegression
+
+from learning.export.from_learner import torque_form
+from learning.export.torque_form import evaluate, largest_difference
+from learning.export.waves import Waves
+from learning.learners.network import FeedForwardNetwork
+from learning.learners.trigonometric import EquivariantTrigonometric
+from symbolic.domain import FundamentalDomain
+from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
+from symbolic.robots import load_robot
+from symbolic.symmetries import primary_symmetries
+from tests.learning.export.models import QUICK, fitted_learner
+from verify.strategies import known_arms
+
+
+@given(arm=known_arms(max_joints=3), seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=15, deadline=None)
+def test_networks_in_the_domain_of_any_group(arm, seed):
+    """The copy deepest in the domain is the representative that the fold finds."""
+    group = arm.group
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-np.pi, np.pi, (6, group.n))
+    learner = FeedForwardNetwork(2, symmetries="canonical", group=group, **QUICK)
+    learner.fit(q, rng.normal(size=q.shape))
+    queries = rng.uniform(-9.0, 9.0, (20, group.n))
+    expected = learner.predict(queries)
+    found = evaluate(torque_form(learner), queries)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
+
+
+def test_representatives_lie_in_the_domain():
+    learner = fitted_learner("canonical", "3r")
+    form = torque_form(learner)
+    domain = FundamentalDomain(primary_symmetries(GravityModel(load_robot("3r")).potential))
+    assert len(form.copies.linear) < 20 * domain.order
+
+
+@given(seed=st.integers(0, 2**32 - 1), joints=st.integers(1, 4))
+@settings(max_examples=30, deadline=None)
+def test_three_angles_per_joint_determine_multi_affine_torques(seed, joints):
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-np.pi, np.pi, (3**joints, joints))
+    learner = EquivariantTrigonometric(potential=False).fit(q, rng.normal(size=q.shape))
+    grid = np.stack(np.meshgrid(*[np.arange(3) * 2 * np.pi / 3] * joints, indexing="ij"), axis=-1)
+    torques = learner.predict(grid.reshape(-1, joints)).reshape(*[3] * joints, joints)
+    size = max(1.0, np.abs(torques).max())
+    assert largest_difference(Waves.of_samples_on_grid(torques), learner.predict) < 1e-12 * size
+
+
+def test_the_parametric_model_becomes_few_waves():
+    form = torque_form(fitted_learner("parametric"))
+    k = form.frequencies[np.abs([form.cos, form.sin]).max(axis=(0, 2)) > 1e-9]
+    assert sorted(map(tuple, k.tolist())) == [(1, 0), (1, 1)]
+
+
+def test_other_learners_are_refused_by_name():
+    with pytest.raises(InputError, match="LinearRegression"):
+        torque_form(LinearRegression())
+
+
+def test_an_unfitted_learner_is_refused():
+    with pytest.raises(Exception, match="fit"):
+        torque_form(EquivariantTrigonometric())
