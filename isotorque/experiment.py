@@ -5,50 +5,40 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.run_options import ArmOptions, RunOptions
+from isotorque.learning_curve import CurvePoint, DenseTest, curve_counts
+from isotorque.run_options import LATTICE, ArmOptions, RunOptions
 from learning.arm import OutcomeKind
+from learning.exploration.by_name import DIRECTIONS
 from learning.exploration.step import ExplorationStep
-from learning.learners.by_name import online_learner
+from learning.learners.by_name import BATCH_LEARNERS, learner_by_name, online_learner
+from learning.learners.collected_samples import CollectedSamples
 from learning.model_files import SavedModel, save_model
-from learning.physics import MeasurementNoise
+from learning.physics import MeasurementNoise, PhysicsMode
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
 from learning.recordings.recording_reader import RecordingReader
 from learning.recordings.run_info import RunInfo
-from learning.scheme import Discovery, Scheme, SchemeSettings
+from learning.scheme import Discovery, LearnerFactory, Scheme, SchemeSettings
 from learning.simulation.simulated_arm import SimulatedArm
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from symbolic.robots import Robot, load_robot
 from symbolic.symmetries import primary_symmetries
-from verify.models import torque_rmse
-from verify.targets import dense_targets
 
 Array = NDArray[np.float64]
 Progress = Callable[[str, int, int, str], None]
 
-CURVE_POINTS = 40
-"""Points of a learning curve."""
 DATABASE = "run.sqlite"
 SENSORS = 100
 """Generators of sensors are numbered from here on."""
 DISCOVERING, LEARNING = "discovering symmetries", "learning the inverse statics"
-
-
-@dataclass(frozen=True, eq=False)
-class CurvePoint:
-    """The model after some samples: torque RMSE on the dense set [N m], share of BCTS explored."""
-
-    samples: int
-    rmse: float
-    explored: float | None
 
 
 @dataclass(eq=False)
@@ -116,13 +106,14 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
     InputError
         For a robot or options that cannot be used, and for a directory that holds another run.
     """
-    robot = load_robot(options.robot, snap=options.arm.snap)
+    made_with = options.discovering
+    robot = load_robot(options.robot, snap=made_with.snap)
     clock: dict[str, float] = {}
     with _timed(clock, "derivation"):
         gravity = GravityModel(robot)
         group = primary_symmetries(gravity.potential)
-    arm = simulated_arm(robot, options.arm, 0)
-    info = _info(robot, arm, options.arm, "discover", {"n_min": options.n_min})
+    arm = simulated_arm(robot, made_with, 0)
+    info = run_info(robot, arm, made_with, "discover", {"n_min": options.n_min})
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
         _timed(clock, "discovery"),
@@ -130,9 +121,9 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
         recorded = RecordedSimulation(arm, recording, phase="discovery")
         scheme = Scheme(
             recorded,
-            _generator(options.arm, 0),
-            lambda known, _range: online_learner(options.learner, known),
-            SchemeSettings(n_min=options.n_min, samples=options.samples),
+            random_generator(made_with, 0),
+            _learner_factory(options, robot.n),
+            _scheme_settings(options),
             group=group if options.symmetries == "exact" else None,
             use_symmetries=options.symmetries != "none",
         )
@@ -159,17 +150,22 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     """
     options = result.options
     arm = simulated_arm(result.robot, options.arm, 1)
-    chosen = {k: getattr(options, k) for k in ("samples", "learner", "symmetries")}
-    info = _info(result.robot, arm, options.arm, "learn", chosen)
+    chosen = {k: getattr(options, k) for k in ("samples", "symmetries", "strategy")}
+    # a batch learner does not change what the arm does: another one may use the same samples
+    chosen["learner"] = options.leader
+    info = run_info(result.robot, arm, options.arm, "learn", chosen)
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
         _timed(result.seconds, "learning"),
     ):
         recorded = RecordedSimulation(arm, recording, phase="learning")
         result.scheme.arm = recorded
-        result.scheme.rng = _generator(options.arm, 1)
+        result.scheme.rng = random_generator(options.arm, 1)
         _follow(result, progress)
         recorded.finish()
+    learner = result.scheme.learner
+    if isinstance(learner, CollectedSamples):
+        result.scheme.learner = learner.fitted()
 
 
 def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:
@@ -181,66 +177,93 @@ def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOut
 
 def save_run_model(result: RunOutcome, out: Path) -> Path:
     """Write the learned model to ``out``; return the path of its JSON."""
-    robot = result.robot
-    notes = {"learner": result.options.learner, "symmetries": result.options.symmetries}
-    saved = SavedModel(result.scheme.learner, robot.name, robot.digest, robot.joint_names, notes)
+    options = result.options
+    notes = {k: getattr(options, k) for k in ("learner", "symmetries", "strategy", "samples")}
+    return save_learner(result.scheme.learner, result.robot, notes, out)
+
+
+def save_learner(learner: Any, robot: Robot, notes: dict[str, Any], out: Path) -> Path:
+    """Write a learner of a robot to ``out``; return the path of its JSON."""
+    saved = SavedModel(learner, robot.name, robot.digest, robot.joint_names, notes)
     return save_model(saved, out)
 
 
-def with_recorded_discovery(options: RunOptions, out: Path) -> RunOptions:
-    """Return the options with the arm of the discovery that ``out`` already holds, if any."""
+def recorded_discovery(out: Path) -> tuple[ArmOptions, int] | None:
+    """Return the arm and the n_min of the discovery that ``out`` already holds, if any."""
     path = out / DATABASE
     if not path.is_file():
-        return options
+        return None
     with RecordingReader(path, check=False) as reader:
         for part in reader.parts:
             if part.info.part == "discover":
                 recorded = part.info.options
                 names = {f.name for f in fields(ArmOptions)}
                 arm = ArmOptions(**{k: v for k, v in recorded["made_with"].items() if k in names})
-                return replace(options, arm=arm, n_min=int(recorded["n_min"]))
-    return options
+                return arm, int(recorded["n_min"])
+    return None
+
+
+def _scheme_settings(options: RunOptions) -> SchemeSettings:
+    strategy = DIRECTIONS if options.strategy == LATTICE else options.strategy
+    return SchemeSettings(n_min=options.n_min, samples=options.samples, strategy=strategy)
+
+
+def _learner_factory(options: RunOptions, joints: int) -> LearnerFactory:
+    """Make what an exploration teaches: the online learner, or one that leads and collects."""
+
+    def make(group: SymmetryGroup | None, torque_range: Array) -> Any:
+        if options.learner not in BATCH_LEARNERS:
+            return online_learner(options.learner, group)
+        task = options.task(joints)
+        return CollectedSamples(
+            online_learner(options.leader, group),
+            lambda: learner_by_name(options.learner, group, task),
+        )
+
+    return make
 
 
 def _follow(result: RunOutcome, progress: Progress) -> None:
-    dense = dense_targets(result.robot.limits).q
-    truth = result.gravity.torque(dense)
-    active = [name not in result.gravity.free_joints for name in result.robot.joint_names]
+    test = DenseTest(result.robot, result.gravity)
     total = result.options.samples
-    every = max(1, total // CURVE_POINTS)
+    counts = curve_counts(result.options.learner, total)
     for step in result.scheme.learn():
         result.steps.append(step)
         count, note = len(result.steps), ""
-        if count % every == 0 or count == total:
-            learner = result.scheme.learner
-            assert learner is not None
-            rmse = torque_rmse(learner.predict(dense) - truth, active)
+        if count in counts:
+            learner: Any = result.scheme.learner
+            rmse = test.rmse(learner.fitted() if hasattr(learner, "fitted") else learner)
             result.curve.append(CurvePoint(count, rmse, step.explored))
             note = f"RMSE {rmse:.4g} N m"
         progress(LEARNING, count, total, note)
 
 
-def _generator(options: ArmOptions, stage: int) -> np.random.Generator:
+def random_generator(options: ArmOptions, stage: int) -> np.random.Generator:
     """Return the generator of a stage: learning does not depend on how long discovery took."""
     return np.random.default_rng(np.random.SeedSequence(options.seed, spawn_key=(stage,)))
 
 
 def simulated_arm(robot: Robot, options: ArmOptions, stage: int) -> SimulatedArm:
     """Return the arm of a stage; its sensors have a generator of their own."""
-    noise = MeasurementNoise(options.angle_noise, options.torque_noise, options.encoder_step)
+    # who holds a guided arm measures torques of the same standard deviation
+    held = np.sqrt(3.0) * options.torque_noise * (options.physics == PhysicsMode.GUIDED)
+    noise = MeasurementNoise(
+        options.angle_noise, options.torque_noise, options.encoder_step, float(held)
+    )
     return SimulatedArm(
         robot,
         physics=options.physics,
         engine=options.engine,
         settle=options.settle,
         noise=noise,
-        rng=_generator(options, SENSORS + stage) if noise.is_random else None,
+        rng=random_generator(options, SENSORS + stage) if noise.is_random else None,
     )
 
 
-def _info(
+def run_info(
     robot: Robot, arm: SimulatedArm, options: ArmOptions, part: str, more: dict[str, Any]
 ) -> RunInfo:
+    """Return what a part of a run is made with, for its recording."""
     return RunInfo(
         robot.name,
         robot.digest,

@@ -4,8 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from learning.learners.by_name import online_learner
+from learning.exploration.by_name import DIRECTIONS, EXPLORATIONS
+from learning.learners.by_name import BATCH_LEARNERS, LEADER, LearningTask, check_learner
+from learning.physics import PhysicsMode, SettleMode
 from symbolic.errors import InputError
+
+LATTICE = "lattice"
+STRATEGIES = (*EXPLORATIONS, LATTICE)
+LATTICE_SAMPLES, ONLINE_SAMPLES, BATCH_SAMPLES = 255, 3000, 500
+"""Samples by default: the paper's lattice; learned one by one; collected for one fit."""
+
+
+def default_learner(strategy: str) -> str:
+    """Return the learner where none is named: the paper's for online and for batch learning."""
+    return "network" if strategy == LATTICE else "local-linear-map-it"
+
+
+def default_samples(strategy: str, learner: str) -> int:
+    """Return the number of samples where none is given."""
+    if strategy == LATTICE:
+        return LATTICE_SAMPLES
+    return BATCH_SAMPLES if learner in BATCH_LEARNERS else ONLINE_SAMPLES
 
 
 @dataclass(frozen=True)
@@ -34,6 +53,13 @@ class ArmOptions:
     torque_noise: float = 0.0
     encoder_step: float = 0.0
 
+    @property
+    def is_exact(self) -> bool:
+        """Whether samples have no errors that a learner should not learn."""
+        sensors = self.angle_noise or self.torque_noise or self.encoder_step
+        moves = self.settle == SettleMode.RAW or self.physics == PhysicsMode.GEARED
+        return not (sensors or moves)
+
 
 @dataclass(frozen=True)
 class RunOptions:
@@ -48,11 +74,15 @@ class RunOptions:
     n_min : int
         Relations needed before learning begins.
     samples : int
-        Torques commanded while learning.
+        Torques commanded, or configurations visited, while learning.
     learner : str
-        Name of the online learner.
+        Name of the learner.
     symmetries : str
         ``learned``, ``exact`` or ``none``.
+    strategy : str
+        Which samples are taken: an exploration, or ``lattice``.
+    discovery_arm : ArmOptions or None
+        The simulated arm of the discovery, where it is another.
     """
 
     robot: str
@@ -61,12 +91,52 @@ class RunOptions:
     samples: int = 3000
     learner: str = "local-linear-map-it"
     symmetries: str = "learned"
+    strategy: str = DIRECTIONS
+    discovery_arm: ArmOptions | None = None
 
     def __post_init__(self) -> None:
-        if self.symmetries not in ("learned", "exact", "none"):
-            raise InputError("run", "--symmetries", self.symmetries, "learned, exact or none")
+        check_symmetries(self.symmetries)
         if self.samples < 1:
             raise InputError("run", "--samples", self.samples, "at least 1")
         if self.n_min < 1:
             raise InputError("run", "--n-min", self.n_min, "at least 1")
-        online_learner(self.learner, None)
+        if self.strategy not in STRATEGIES:
+            raise InputError("run", "--strategy", self.strategy, ", ".join(STRATEGIES))
+        check_learner(self.learner)
+        if self.strategy == LATTICE and self.arm.physics != PhysicsMode.GUIDED:
+            accepted = "guided (a lattice visits what an arm cannot hold by itself)"
+            raise InputError("run", "--physics with --strategy lattice", self.arm.physics, accepted)
+
+    @property
+    def discovering(self) -> ArmOptions:
+        """The simulated arm of the discovery."""
+        return self.arm if self.discovery_arm is None else self.discovery_arm
+
+    @property
+    def leader(self) -> str:
+        """The learner that estimates the torques of an exploration."""
+        return LEADER if self.learner in BATCH_LEARNERS else self.learner
+
+    def task(self, joints: int) -> LearningTask:
+        """Return what batch learners are told beforehand."""
+        return LearningTask(
+            joints,
+            self.samples,
+            not self.arm.is_exact,
+            self.robot,
+            self.arm.snap,
+            self.arm.seed,
+        )
+
+
+def check_symmetries(which: str) -> str:
+    """Return which symmetries are exploited, checked.
+
+    Raises
+    ------
+    InputError
+        For another word than learned, exact or none.
+    """
+    if which not in ("learned", "exact", "none"):
+        raise InputError("run", "--symmetries", which, "learned, exact or none")
+    return which

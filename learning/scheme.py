@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
 from learning.discovery import DiscoverySettings, babble, choose_target, discover
+from learning.exploration.by_name import DIRECTIONS, check_exploration, exploration_by_name
 from learning.exploration.cell_choice import central_domain
 from learning.exploration.explored_share import ExploredShare
-from learning.exploration.loop import Learner
+from learning.exploration.loop import Exploration, Learner
 from learning.exploration.settings import ExplorationSettings
 from learning.exploration.step import ExplorationStep
-from learning.exploration.strategies import ConstrainedDirectionSampling
 from learning.relations.learned_symmetries import LearnedSymmetries
 from learning.relations.relation_learning import learn_relations
 from learning.static_torques.static_torque_set import StaticTorqueSet
@@ -39,7 +39,9 @@ class SchemeSettings:
     discovery : DiscoverySettings
         Torque profiles and babbling.
     exploration : ExplorationSettings
-        Constrained direction sampling.
+        The learning phase.
+    strategy : str
+        Which exploration it is, see `exploration_by_name`.
     n_min : int
         Relations needed before learning begins (n_min of section 5.4).
     confirmations : int
@@ -57,8 +59,10 @@ class SchemeSettings:
     confirmations: int = 2
     max_targets: int = 12
     samples: int = 2000
+    strategy: str = DIRECTIONS
 
     def __post_init__(self) -> None:
+        check_exploration(self.strategy)
         for name, least in (("n_min", 1), ("confirmations", 0), ("max_targets", 1), ("samples", 1)):
             if getattr(self, name) < least:
                 raise InputError("scheme", name, getattr(self, name), f"at least {least}")
@@ -144,7 +148,7 @@ class Scheme:
         self.learner: Learner | None = None
         self.gates: list[GateDecision] = []
         self.targets: list[Array] = []
-        self.exploration: ConstrainedDirectionSampling | None = None
+        self.exploration: Exploration | None = None
         self._make_learner, self._given, self._use = make_learner, group, use_symmetries
         self._seen: list[Array] = []
         self._settled_q: list[Array] = []
@@ -229,7 +233,7 @@ class Scheme:
         return passed
 
     def learn(self) -> Iterator[ExplorationStep]:
-        """Explore by Constrained Direction Sampling within the BCTS and learn online.
+        """Explore within the BCTS and learn online.
 
         Yields
         ------
@@ -244,13 +248,15 @@ class Scheme:
             points = self.domain.sample(np.random.default_rng(0), SHARE_POINTS)
             explored = ExploredShare(points, self.settings.exploration.step_width, group)
         self.learner = self._make_learner(group, self.torque_range)
-        self.exploration = ConstrainedDirectionSampling(
+        self.exploration = exploration_by_name(
+            self.settings.strategy,
             self.arm,
             self.learner,
             self.rng,
+            domain=self.domain,
+            seen=np.array(self._seen or [self.home]),
             torque_range=self.torque_range,
             static_torques=self.static_torques,
-            domain=self.domain,
             settings=self.settings.exploration,
             explored=explored,
         )

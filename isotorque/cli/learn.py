@@ -1,6 +1,11 @@
-"""``isotorque learn``: explore and learn the inverse statics model."""
+"""``isotorque learn``: explore, sample a lattice or read a recording, and learn from it."""
 
 from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
 
 from isotorque.cli.options import (
     AngleNoise,
@@ -16,16 +21,43 @@ from isotorque.cli.options import (
     Settle,
     TorqueNoise,
 )
-from isotorque.cli.output import emit_json, say
+from isotorque.cli.output import emit_json, row, say
 from isotorque.cli.run_options import LearnerName, NMin, Samples, Symmetries
+
+SIMULATED = ("n_min", "physics", "engine", "settle", "angle_noise", "torque_noise", "encoder_step")
 
 
 def learn(
+    context: typer.Context,
     robot: RobotName,
     out: Out,
-    samples: Samples = 3000,
-    learner: LearnerName = "local-linear-map-it",
+    strategy: Annotated[
+        str,
+        typer.Option(
+            "--strategy",
+            metavar="NAME",
+            help="direction-sampling, goal-babbling, motor-babbling or lattice.",
+        ),
+    ] = "direction-sampling",
+    samples: Samples = None,
+    learner: LearnerName = None,
     symmetries: Symmetries = "learned",
+    data: Annotated[
+        Path | None,
+        typer.Option(
+            "--data",
+            metavar="FILE.csv",
+            help="Learn from a recording: columns q1,..,qn,tau1,..,taun or <joint>.q and"
+            " <joint>.tau, in rad and N m; nothing moves.",
+            show_default=False,
+        ),
+    ] = None,
+    drop_outliers: Annotated[
+        bool,
+        typer.Option(
+            "--drop-outliers", help="With --data: leave out rows that do not fit the others."
+        ),
+    ] = False,
     n_min: NMin = 2,
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
@@ -38,37 +70,71 @@ def learn(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Learn by Constrained Direction Sampling; goes on from a discovery in OUT, or makes one."""
+    """Learn the inverse statics model of ROBOT; goes on from a discovery in OUT, or makes one.
+
+    A lattice is visited with guided physics; what is not given is as in the discovery.
+    """
     from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.experiment import run_experiment, save_run_model, with_recorded_discovery
-    from isotorque.run_options import ArmOptions, RunOptions
-    from verify.models import verify_model
+    from isotorque.data_learning import DataOptions, learn_from_data
+    from isotorque.experiment import run_experiment
+    from isotorque.lattice_learning import learn_from_lattice
+    from isotorque.learn_options import learn_options
+    from isotorque.learned_model import model_of_run
+    from isotorque.run_options import LATTICE
 
-    arm = ArmOptions(
-        seed, physics, engine, settle, not no_snap, angle_noise, torque_noise, encoder_step
-    )
-    options = with_recorded_discovery(
-        RunOptions(robot, arm, n_min, samples, learner, symmetries), out
-    )
-    output_directory(out)
-    with progress_bars(quiet) as progress:
-        outcome = run_experiment(options, out, progress)
-    model = save_run_model(outcome, out)
-    judged = verify_model(outcome.scheme.learner, outcome.gravity, limits=outcome.robot.limits)
-    document = {
-        "robot": outcome.robot.name,
-        "learner": learner,
-        "symmetries": symmetries,
-        "discovery_motions": len(outcome.motions),
-        "samples": len(outcome.steps),
-        "rmse_torque": judged.rmse,
-        "rmse_by_joint": judged.rmse_by_joint,
-        "curve": [{"samples": p.samples, "rmse": p.rmse} for p in outcome.curve],
-        "model": str(model),
-    }
+    given = _given(context)
+    if data is not None:
+        _refuse(given, ("strategy", "samples", *SIMULATED), "--data")
+        recording = DataOptions(
+            robot, data, learner, symmetries, drop_outliers, seed, snap=not no_snap
+        )
+        with progress_bars(quiet) as progress:
+            learned = learn_from_data(recording, output_directory(out), progress)
+    else:
+        _refuse(given, ("drop_outliers",), "a simulated arm")
+        options = learn_options(robot, out, strategy, symmetries, learner, samples, given)
+        output_directory(out)
+        with progress_bars(quiet) as progress:
+            if strategy == LATTICE:
+                learned = learn_from_lattice(options, out, progress)
+            else:
+                learned = model_of_run(run_experiment(options, out, progress))
+    document = learned.document(learned.save(out))
     if json:
         emit_json(document)
-        return
-    print(f"torque RMSE {judged.rmse:.4g} N m on {judged.targets[0].name}")
-    say(f"written: {model}", quiet)
+    else:
+        _print(document)
+        say(f"written: {document['model']}", quiet)
+
+
+def _given(context: typer.Context) -> dict[str, Any]:
+    """Options that stand on the command line, with their values."""
+    named = {
+        name: value
+        for name, value in context.params.items()
+        if "DEFAULT" not in str(context.get_parameter_source(name))
+    }
+    if "no_snap" in named:
+        named["snap"] = not named.pop("no_snap")
+    return named
+
+
+def _refuse(given: dict[str, Any], names: tuple[str, ...], beside: str) -> None:
+    from symbolic.errors import InputError
+
+    for name in names:
+        if name in given:
+            option = f"--{name.replace('_', '-')} with {beside}"
+            raise InputError(
+                "command line", option, given[name], "nothing: it has no meaning there"
+            )
+
+
+def _print(document: dict[str, Any]) -> None:
+    print(f"torque RMSE {document['rmse_torque']:.4g} N m on the {document['test']},", end=" ")
+    print(f"by joint {row(document['rmse_by_joint'], 4)}")
+    print(f"{document['samples']} samples, {document['relations']} symmetry relations,", end=" ")
+    print(f"{document['discovery_motions']} motions to discover them")
+    for remark in document["remarks"]:
+        print(remark)

@@ -23,8 +23,8 @@ from isotorque.cli.run_options import LearnerName, NMin, Samples, Symmetries
 def run(
     robot: RobotName,
     out: Out,
-    samples: Samples = 3000,
-    learner: LearnerName = "local-linear-map-it",
+    samples: Samples = None,
+    learner: LearnerName = None,
     symmetries: Symmetries = "learned",
     n_min: NMin = 2,
     physics: Physics = "open_loop",
@@ -46,12 +46,15 @@ def run(
     from isotorque.cli.progress import progress_bars
     from isotorque.experiment import run_experiment, save_run_model
     from isotorque.judgement import judge_run
-    from isotorque.run_options import ArmOptions, RunOptions
+    from isotorque.run_options import ArmOptions, RunOptions, default_learner, default_samples
+    from learning.exploration.by_name import DIRECTIONS
     from verify.report import write_report
 
     arm = ArmOptions(
         seed, physics, engine, settle, not no_snap, angle_noise, torque_noise, encoder_step
     )
+    learner = default_learner(DIRECTIONS) if learner is None else learner
+    samples = default_samples(DIRECTIONS, learner) if samples is None else samples
     options = RunOptions(robot, arm, n_min, samples, learner, symmetries)
     output_directory(out)
     with progress_bars(quiet) as progress:

@@ -6,13 +6,25 @@ from typing import Annotated
 
 import typer
 
-Samples = Annotated[int, typer.Option("--samples", min=1, help="Torques commanded while learning.")]
+Samples = Annotated[
+    int | None,
+    typer.Option(
+        "--samples",
+        min=1,
+        help="Torques commanded, or configurations of the lattice. [default: 3000 for an online"
+        " learner, 500 for a batch learner, 255 for a lattice]",
+        show_default=False,
+    ),
+]
 LearnerName = Annotated[
-    str,
+    str | None,
     typer.Option(
         "--learner",
         metavar="NAME",
-        help="local-linear-map, local-linear-map-it or recursive-least-squares.",
+        help="Online: local-linear-map, local-linear-map-it, recursive-least-squares; batch:"
+        " network, gaussian-process, trigonometric, parametric. [default: local-linear-map-it;"
+        " network for a lattice]",
+        show_default=False,
     ),
 ]
 Symmetries = Annotated[

@@ -42,12 +42,14 @@ class CollectedSamples:
         self._leader, self._make_batch = leader, make_batch
         self._q: list[Array] = []
         self._torque: list[Array] = []
+        self._fitted: Any = None
 
     def partial_fit(self, X: Any, y: Any, sample_weight: Any = None) -> CollectedSamples:
         """Keep samples (m, n) [rad], (m, n) [N m], and teach the leader."""
         self._q.append(np.array(X, dtype=float))
         self._torque.append(np.array(y, dtype=float))
         self._leader.partial_fit(X, y, sample_weight)
+        self._fitted = None
         return self
 
     def predict(self, X: Any) -> Any:
@@ -55,5 +57,8 @@ class CollectedSamples:
         return self._leader.predict(X)
 
     def fitted(self) -> Any:
-        """Return a fresh batch learner, fitted to all samples so far."""
-        return self._make_batch().fit(np.concatenate(self._q), np.concatenate(self._torque))
+        """Return a batch learner fitted to all samples so far."""
+        if self._fitted is None:
+            learner = self._make_batch()
+            self._fitted = learner.fit(np.concatenate(self._q), np.concatenate(self._torque))
+        return self._fitted

@@ -1,0 +1,66 @@
+"""Options of a learning command, beside those of a discovery it goes on from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from isotorque.experiment import recorded_discovery
+from isotorque.run_options import (
+    LATTICE,
+    ArmOptions,
+    RunOptions,
+    default_learner,
+    default_samples,
+)
+from learning.physics import PhysicsMode
+
+
+def learn_options(
+    robot: str,
+    out: Path,
+    strategy: str,
+    symmetries: str,
+    learner: str | None,
+    samples: int | None,
+    given: Mapping[str, Any],
+) -> RunOptions:
+    """Return the options of ``isotorque learn`` in full.
+
+    Parameters
+    ----------
+    robot, strategy, symmetries
+        As in `RunOptions`.
+    out
+        Directory of the run. Where it holds a discovery, what is not given is taken from there.
+    learner, samples
+        None: the default of the strategy.
+    given
+        Options of the arm (`ArmOptions`) and ``n_min``, as far as the user gave them.
+
+    Raises
+    ------
+    InputError
+        For options that make no sense.
+    """
+    learner = default_learner(strategy) if learner is None else learner
+    samples = default_samples(strategy, learner) if samples is None else samples
+    asked = {f.name: given[f.name] for f in fields(ArmOptions) if f.name in given}
+    if strategy == LATTICE and "physics" not in asked:
+        asked["physics"] = PhysicsMode.GUIDED.value
+    recorded = recorded_discovery(out)
+    if recorded is None:
+        arm, n_min = ArmOptions(**asked), 2
+        # an arm discovers by itself; it is led only to what it cannot hold
+        alone = PhysicsMode.OPEN_LOOP.value
+        discovery = replace(arm, physics=alone) if strategy == LATTICE else arm
+    else:
+        discovery, n_min = recorded
+        arm = replace(discovery, **asked)
+        # one robot in one run: the recording refuses another one
+        discovery = replace(discovery, snap=arm.snap)
+    return RunOptions(
+        robot, arm, given.get("n_min", n_min), samples, learner, symmetries, strategy, discovery
+    )

@@ -1,0 +1,70 @@
+"""Learning curves: the error of a model while samples come in, on the dense test set."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.learners.by_name import ONLINE_LEARNERS
+from symbolic.gravity import GravityModel
+from symbolic.robots import Robot
+from verify.models import torque_rmse
+from verify.targets import dense_targets
+
+Array = NDArray[np.float64]
+
+CURVE_POINTS = 40
+"""Points of the learning curve of an online learner."""
+FIRST_FIT = 8
+"""First point of the curve of a batch learner; the next ones double it: each costs a fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class CurvePoint:
+    """The model after some samples: torque RMSE on the dense set [N m], share of BCTS explored."""
+
+    samples: int
+    rmse: float
+    explored: float | None = None
+
+
+class DenseTest:
+    """The dense test set of a robot with its true torques.
+
+    Parameters
+    ----------
+    robot, gravity
+        The robot and the truth about it.
+    """
+
+    def __init__(self, robot: Robot, gravity: GravityModel) -> None:
+        self._q: Array = dense_targets(robot.limits).q
+        self._torque = gravity.torque(self._q)
+        self._active = [name not in gravity.free_joints for name in robot.joint_names]
+
+    def rmse(self, learner: Any) -> float:
+        """Torque RMSE of a learner over active joints [N m]."""
+        return torque_rmse(learner.predict(self._q) - self._torque, self._active)
+
+
+def curve_counts(learner: str, total: int) -> frozenset[int]:
+    """Return the numbers of samples at which a learner of that name is tested.
+
+    Examples
+    --------
+    >>> sorted(curve_counts("network", 50))
+    [8, 16, 32, 50]
+    >>> sorted(curve_counts("local-linear-map", 81))[:3]
+    [2, 4, 6]
+    """
+    if learner in ONLINE_LEARNERS:
+        every = max(1, total // CURVE_POINTS)
+        return frozenset({*range(every, total + 1, every), total})
+    counts, count = {total}, FIRST_FIT
+    while count < total:
+        counts.add(count)
+        count *= 2
+    return frozenset(counts)

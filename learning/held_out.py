@@ -1,0 +1,142 @@
+"""Errors on samples that a model has not seen, and samples that do not fit the others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+FOLDS = 5
+PASSES = 4
+"""Most rounds of looking for outliers after the first."""
+SUSPECT, STRICT = 2.0, 4.0
+"""Upper spreads of log |error| above the median from which a sample is suspected, and is one."""
+LEAST_SHARE = 0.01
+"""Errors below this share of a joint's torques (their 95 % quantile) never stand out."""
+_TINY = 1e-300
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """How well samples are predicted by models that have not seen them.
+
+    Attributes
+    ----------
+    errors : (m, n) array
+        Predicted less measured torques [N m].
+    outliers : (m,) bool array
+        Samples that stand out; no model was trained on them.
+    folds : int
+        Number of parts, each predicted by a model trained on the others.
+    """
+
+    errors: Array
+    outliers: Flags
+    folds: int
+
+    @property
+    def rmse(self) -> float:
+        """Root mean square error of all samples [N m]."""
+        return float(np.sqrt(np.mean(self.errors**2)))
+
+    @property
+    def rmse_by_joint(self) -> Array:
+        """The same joint by joint, (n,) [N m]."""
+        return np.asarray(np.sqrt(np.mean(self.errors**2, axis=0)))
+
+    @property
+    def rmse_of_others(self) -> float:
+        """Root mean square error of the samples that do not stand out [N m]."""
+        return float(np.sqrt(np.mean(self.errors[~self.outliers] ** 2)))
+
+    def worst(self, count: int) -> NDArray[np.int64]:
+        """Numbers of the outliers that are farthest off, the worst first."""
+        size = np.abs(self.errors).max(axis=1)
+        return np.array([i for i in np.argsort(-size) if self.outliers[i]][:count], dtype=np.int64)
+
+
+def held_out(
+    make: Callable[[], Any],
+    q: ArrayLike,
+    torque: ArrayLike,
+    rng: np.random.Generator,
+    *,
+    folds: int = FOLDS,
+) -> HeldOut:
+    """Cross-validate a learner, and find samples that do not fit the others.
+
+    Parameters
+    ----------
+    make
+        Returns a fresh learner (``fit``, ``predict``).
+    q, torque : (m, n) arrays
+        Samples [rad], [N m]; m at least 2.
+    rng
+        Deals the samples into parts.
+    folds
+        Number of parts, at most m.
+
+    Returns
+    -------
+    HeldOut
+
+    Notes
+    -----
+    A sample stands out if the error of one of its torques lies ``STRICT`` spreads above the median
+    of that joint's errors, where the spread is that of the upper quartile over the median, both on
+    a logarithmic scale, and above ``LEAST_SHARE`` of that joint's torques. For normal errors that
+    is 5.7 standard deviations; the logarithm allows for learners that are much better among their
+    samples than at the edge. As an outlier spoils the models that learn it, whatever is suspected
+    (``SUSPECT``, 2 standard deviations) is left out of training first; what then stands out is
+    left out, the rest comes back, and all are looked at again.
+
+    Examples
+    --------
+    >>> from sklearn.linear_model import LinearRegression
+    >>> q = np.linspace(-1.0, 1.0, 30)[:, None]
+    >>> torque = 3.0 * q + 0.01 * np.random.default_rng(1).normal(size=q.shape)
+    >>> torque[7] += 5.0
+    >>> found = held_out(LinearRegression, q, torque, np.random.default_rng(0))
+    >>> np.flatnonzero(found.outliers).tolist(), round(found.rmse_of_others, 2)
+    ([7], 0.01)
+    """
+    samples, torques = np.asarray(q, dtype=float), np.asarray(torque, dtype=float)
+    count = len(samples)
+    folds = min(folds, count)
+    part = rng.permutation(count) % folds
+    outliers = np.zeros(count, dtype=bool)
+    errors = _errors(make, samples, torques, part, outliers)
+    found = _stand_out(errors, torques, SUSPECT)
+    for _ in range(PASSES):
+        enough = all(np.any(~found & (part != k)) for k in range(folds))
+        if not enough or np.array_equal(found, outliers):
+            break
+        outliers = found
+        errors = _errors(make, samples, torques, part, outliers)
+        found = _stand_out(errors, torques, STRICT)
+    # what a last round still left out for no reason is no outlier
+    return HeldOut(errors, outliers & _stand_out(errors, torques, STRICT), folds)
+
+
+def _errors(
+    make: Callable[[], Any], q: Array, torque: Array, part: NDArray[np.int64], left_out: Flags
+) -> Array:
+    errors = np.empty_like(torque)
+    for k in range(int(part.max()) + 1):
+        asked, known = part == k, (part != k) & ~left_out
+        errors[asked] = make().fit(q[known], torque[known]).predict(q[asked]) - torque[asked]
+    return errors
+
+
+def _stand_out(errors: Array, torque: Array, spreads: float) -> Flags:
+    logs = np.log(np.maximum(np.abs(errors), _TINY))
+    middle, upper = np.quantile(logs, [0.5, 0.75], axis=0)
+    least = LEAST_SHARE * np.quantile(np.abs(torque), 0.95, axis=0)
+    bound = np.exp(np.minimum(middle + spreads * (upper - middle), 700.0))
+    return np.asarray((np.abs(errors) > np.maximum(bound, least)).any(axis=1))
