@@ -16,13 +16,15 @@ def paper_targets(robot: Robot) -> tuple[TargetSet, ...]:
     Notes
     -----
     The paper gives numbers of targets, not targets: 66 on a grid in the BCTS is read as 6 x 11,
-    64 on a grid as 4 x 4 x 4 inside the configuration space; 90 scattered ones are drawn.
+    64 on a grid as 4 x 4 x 4 inside the configuration space; the 90 and the 84 scattered ones are
+    drawn.
     """
     if robot.name == "2r":
         parallelogram = [[QUARTER, -QUARTER], [0.0, HALF]]
         return (
             grid_targets([0.0, 0.0], parallelogram, (6, 11)),
             scattered_targets(robot.limits, 90, seed=90),
+            scattered_targets(robot.limits, 84, seed=84),
         )
     if robot.name == "3r":
         cell = 2 * np.pi / 4

@@ -14,6 +14,7 @@ from isotorque.cli import (
     domain,
     export,
     learn,
+    paper,
     relations,
     robots,
     simulate,
@@ -44,6 +45,7 @@ app.command("relations")(relations.relations)
 app.command("learn")(learn.learn)
 app.command("verify")(verify.verify)
 app.command("run")(run_command.run)
+app.command("paper")(paper.paper)
 app.command("export")(export.export)
 
 

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Polygon, Rectangle
+from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
+from verify.figures.marks import key, mark, ordered, polygon_on_torus
 from verify.figures.style import (
     BLUE,
     FAINT,
@@ -58,7 +56,7 @@ def domain_map(
     -------
     Figure
     """
-    corners = _ordered(rows(polygon, 2, what="polygon"))
+    corners = ordered(rows(polygon, 2, what="polygon"))
     with settings():
         figure, (ax,) = panels(1, width=3.9, height=3.85)
         angle_plane(ax, names_of(joint_names, 2)[:2])  # type: ignore[arg-type]
@@ -69,16 +67,16 @@ def domain_map(
         if stable is not None:
             entries.append(("can hold itself", shade))
             for region in np.asarray(stable, dtype=float):
-                _polygon(ax, _ordered(region), **shade)
+                polygon_on_torus(ax, ordered(region), **shade)
         if images is not None:
             entries.append((f"its {len(np.asarray(images))} images", outline))
             for image in np.asarray(images, dtype=float):
-                _polygon(ax, _ordered(image), **outline)
-        _polygon(ax, corners, **inside)
-        _polygon(ax, corners, fill=False, edgecolor=GREEN, linewidth=1.6)
+                polygon_on_torus(ax, ordered(image), **outline)
+        polygon_on_torus(ax, corners, **inside)
+        polygon_on_torus(ax, corners, fill=False, edgecolor=GREEN, linewidth=1.6)
         if center is not None:
             ax.plot(*np.asarray(center, dtype=float), "+", color=INK, markersize=7)
-        _key(ax, [Patch(label=label, **look) for label, look in entries])
+        key(ax, [Patch(label=label, **look) for label, look in entries])
         return figure
 
 
@@ -119,10 +117,10 @@ def explored_map(
                 wrapped = (values + np.pi) % (2 * np.pi) - np.pi
                 points(ax, wrapped[:, i], wrapped[:, j], color=colour, s=size, alpha=0.7)
             if domain is not None and n == 2:
-                corners = _ordered(rows(domain, 2, what="domain"))
-                _polygon(ax, corners, fill=False, edgecolor=INK, linewidth=1.1)
+                corners = ordered(rows(domain, 2, what="domain"))
+                polygon_on_torus(ax, corners, fill=False, edgecolor=INK, linewidth=1.1)
         marks = ((f"explored ({len(red)})", RED), (f"learned ({len(blue)})", BLUE))
-        _key(axes[0], [_mark("o", colour, label) for label, colour in marks])
+        key(axes[0], [mark("o", colour, label) for label, colour in marks])
         return figure
 
 
@@ -163,45 +161,9 @@ def reached_map(
             )  # fmt: skip
             ax.plot(wanted_at[:, i], wanted_at[:, j], "x", color=RED, markersize=3.6)
             if domain is not None and n == 2:
-                corners = _ordered(rows(domain, 2, what="domain"))
-                _polygon(ax, corners, fill=False, edgecolor=INK, linewidth=1.1)
-        circle = _mark("o", BLUE, "observed")
+                corners = ordered(rows(domain, 2, what="domain"))
+                polygon_on_torus(ax, corners, fill=False, edgecolor=INK, linewidth=1.1)
+        circle = mark("o", BLUE, "observed")
         circle.set_markerfacecolor("none")
-        _key(axes[0], [_mark("x", RED, "target"), circle])
+        key(axes[0], [mark("x", RED, "target"), circle])
         return figure
-
-
-def _key(ax: Axes, handles: Sequence[Artist]) -> None:
-    ax.legend(
-        handles=list(handles), loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=len(handles),
-        borderaxespad=0.2, handletextpad=0.5, columnspacing=1.2, handlelength=1.2,
-    )  # fmt: skip
-
-
-def _mark(marker: str, colour: str, label: str) -> Line2D:
-    return Line2D([], [], linestyle="", marker=marker, color=colour, markersize=5, label=label)
-
-
-def _polygon(ax: Axes, corners: Array, **look: Any) -> None:
-    """Draw a polygon on the torus: all its copies, cut at the edges of the square of one turn."""
-    square = Rectangle((-np.pi, -np.pi), 2 * np.pi, 2 * np.pi, transform=ax.transData)
-    for copy in _on_the_torus(corners):
-        patch = Polygon(copy, **look)
-        ax.add_patch(patch)
-        patch.set_clip_path(square)
-
-
-def _ordered(corners: Array) -> Array:
-    """Order the corners of a convex polygon around its middle."""
-    middle = corners.mean(axis=0)
-    angle = np.arctan2(corners[:, 1] - middle[1], corners[:, 0] - middle[0])
-    return np.asarray(corners[np.argsort(angle)])
-
-
-def _on_the_torus(corners: Array) -> list[Array]:
-    """Return the copies of a polygon, shifted by whole turns, that meet the square of one turn."""
-    near = corners - 2 * np.pi * np.round(corners.mean(axis=0) / (2 * np.pi))
-    turns = 2 * np.pi * np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
-    copies = [near + turn for turn in turns]
-    edge = np.pi - 1e-6
-    return [c for c in copies if np.all(c.min(axis=0) < edge) and np.all(c.max(axis=0) > -edge)]

@@ -54,6 +54,7 @@ def learning_curves(
     goal: float | None = None,
     logarithmic: bool = True,
     iteration: int | None = None,
+    published: Sequence[tuple[float, float]] = (),
 ) -> Figure:
     """Draw torque RMSE against samples (Fig. 13).
 
@@ -67,6 +68,8 @@ def learning_curves(
         Whether both axes are logarithmic; the paper's are linear.
     iteration
         Samples per iteration: the lower axis then counts iterations, as the paper's does.
+    published
+        Samples and torque errors [N m] printed elsewhere, drawn as marks to compare with.
 
     Returns
     -------
@@ -83,6 +86,10 @@ def learning_curves(
                     markersize=3.0)  # fmt: skip
             if curve.low is not None and curve.high is not None:
                 ax.fill_between(x, curve.low, curve.high, color=colour, alpha=0.18, linewidth=0)
+        if published:
+            x, y = np.array(published, dtype=float).T
+            ax.plot(x / per_tick, y, "D", color=INK, markersize=4.5, markerfacecolor="none",
+                    label="printed in the paper", zorder=5)  # fmt: skip
         if goal is not None:
             ax.axhline(goal, color=INK, linewidth=0.9, linestyle=(0, (4, 3)), zorder=1)
             ax.annotate(

@@ -1,0 +1,46 @@
+"""One piece of work: an experiment on a seed; any process on any machine can do it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+from isotorque.cli.output import plain
+from isotorque.paper.experiments import experiment
+from isotorque.paper.measured import Effort
+from symbolic.robots import load_robot
+
+
+@dataclass(frozen=True)
+class Piece:
+    """An experiment on a seed.
+
+    Attributes
+    ----------
+    experiment : str
+        Its name.
+    seed : int
+    share : float
+        See `Effort`.
+    """
+
+    experiment: str
+    seed: int
+    share: float = 1.0
+
+    @property
+    def name(self) -> str:
+        """Name of its file, without ending."""
+        return f"{self.experiment}-{self.seed}"
+
+
+def perform(piece: Piece) -> dict[str, Any]:
+    """Measure, and return plain numbers and lists: ``numbers`` and ``pictures``.
+
+    The same piece gives the same result wherever it is done (times apart).
+    """
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    chosen = experiment(piece.experiment)
+    measured = chosen.measure(load_robot(chosen.robot), piece.seed, Effort(piece.share))
+    return {"numbers": plain(measured.numbers), "pictures": plain(measured.pictures)}
