@@ -18,6 +18,7 @@ from isotorque.cli import (
     relations,
     robots,
     simulate,
+    sweep,
     symmetries,
     verify,
 )
@@ -46,6 +47,7 @@ app.command("learn")(learn.learn)
 app.command("verify")(verify.verify)
 app.command("run")(run_command.run)
 app.command("paper")(paper.paper)
+app.command("sweep")(sweep.sweep)
 app.command("export")(export.export)
 
 

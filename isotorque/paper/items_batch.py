@@ -13,8 +13,8 @@ FACTOR_SLACK = 0.2
 def _factor_why(numbers: Numbers) -> str:
     return (
         f"{text(numbers['samples'])} samples with symmetries, {text(numbers['plain_samples'])} "
-        "without, for the same error on the dense set: the factor belongs to the learner as much as "
-        "to the group, it is not the group's order"
+        "without, for the same error on the dense set: the factor belongs to the learner as much "
+        "as to the group, it is not the group's order"
     )
 
 

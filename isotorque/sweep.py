@@ -1,0 +1,168 @@
+"""A sweep: robots x learners x seeds, one table of learning curves."""
+
+from __future__ import annotations
+
+import csv
+import io
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from isotorque.cli.files import output_directory, write_whole
+from isotorque.experiment import run_experiment
+from isotorque.paper.parts import Parts
+from isotorque.parallel import in_processes, on_cluster
+from isotorque.run_options import ArmOptions, RunOptions
+from isotorque.sweep_table import SweepRun
+from verify.figures.learning_curves import LearningCurve, curve_panels
+from verify.figures.style import save_figure
+
+Progress = Callable[[str, int, int, str], None]
+COLUMNS = (
+    "robot", "learner", "symmetries", "seed", "samples", "rmse", "explored", "motions",
+    "inadmissible",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SweepResult:
+    """Files of a finished sweep and what stands in them.
+
+    Attributes
+    ----------
+    rows : tuple of dict
+        One per evaluation of a run, with `COLUMNS`: torque RMSE on the dense set [N m] after so
+        many commands, share of the BCTS explored by then; motions of the discovery before, and
+        share of the commands that were inadmissible.
+    table, plot : Path
+        ``sweep.csv`` and ``sweep.svg``.
+    """
+
+    rows: tuple[dict[str, Any], ...]
+    table: Path
+    plot: Path
+
+
+def perform_run(run: SweepRun) -> dict[str, Any]:
+    """Discover and learn once; return plain numbers, the same wherever it is done."""
+    options = RunOptions(
+        run.robot, ArmOptions(run.seed), learner=run.learner, symmetries=run.symmetries,
+        samples=run.samples,
+    )  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        result = run_experiment(options, Path(folder), lambda stage, done, total, note: None)
+    lost = sum(str(step.outcome.kind) != "settled" for step in result.steps)
+    return {
+        "curve": [asdict(point) for point in result.curve],
+        "motions": len(result.motions),
+        "inadmissible": lost / max(1, len(result.steps)),
+    }
+
+
+def sweep(
+    runs: Sequence[SweepRun], out: Path, progress: Progress, *, jobs: int = 2,
+    scheduler: str | None = None,
+) -> SweepResult:  # fmt: skip
+    """Do all runs that are not done yet, and write their table and plot.
+
+    Parameters
+    ----------
+    runs
+        From `read_sweep`.
+    out
+        Directory; every finished run is kept in ``out/parts`` and used again.
+    progress
+        Called as ``progress(stage, done, total, note)``.
+    jobs
+        Local processes.
+    scheduler
+        Address of a Dask scheduler to work on instead.
+
+    Raises
+    ------
+    InputError
+        For results made by other versions, and files that cannot be written.
+    """
+    parts = Parts(output_directory(out) / "parts", {"kind": "sweep"})
+    done = parts.load(run.name for run in runs)
+    progress("runs", len(done), len(runs), f"{len(done)} were done before" if done else "")
+    left = [run for run in runs if run.name not in done]
+    results = (
+        in_processes(perform_run, left, jobs)
+        if scheduler is None
+        else on_cluster(perform_run, left, scheduler)
+    )
+    for run, result in results if left else ():
+        parts.save(run.name, result)
+        done[run.name] = result
+        progress("runs", len(done), len(runs), run.name)
+    rows = tuple(row for run in runs for row in _rows(run, done[run.name]))
+    table, plot = out / "sweep.csv", out / "sweep.svg"
+    write_whole(table, _text(rows))
+    save_figure(_plot(runs, done), plot)
+    return SweepResult(rows, table, plot)
+
+
+def _rows(run: SweepRun, result: dict[str, Any]) -> list[dict[str, Any]]:
+    return [
+        {
+            "robot": run.robot,
+            "learner": run.learner,
+            "symmetries": run.symmetries,
+            "seed": run.seed,
+            "samples": point["samples"],
+            "rmse": point["rmse"],
+            "explored": point["explored"],
+            "motions": result["motions"],
+            "inadmissible": result["inadmissible"],
+        }
+        for point in result["curve"]
+    ]
+
+
+def _text(rows: Sequence[dict[str, Any]]) -> str:
+    """Return rows as CSV; numbers in full, nothing where there is none."""
+    buffer = io.StringIO()
+    writer = csv.DictWriter(buffer, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return buffer.getvalue()
+
+
+def _plot(runs: Sequence[SweepRun], done: dict[str, dict[str, Any]]) -> Figure:
+    """Draw one panel per robot: medians over seeds, with the lowest and highest."""
+    panels: dict[str, dict[str, list[dict[str, Any]]]] = {}
+    several = len({run.symmetries for run in runs}) > 1
+    for run in runs:
+        name = f"{run.learner}, {run.symmetries}" if several else run.learner
+        entry = panels.setdefault(run.robot, {}).setdefault(name, [])
+        entry.append(done[run.name])
+    return curve_panels(
+        {
+            Path(robot).stem: [_curve(name, seeds) for name, seeds in learners.items()]
+            for robot, learners in panels.items()
+        }
+    )
+
+
+def _curve(name: str, seeds: Sequence[dict[str, Any]]) -> LearningCurve:
+    longest = max((seed["curve"] for seed in seeds), key=len)
+    samples = np.array([float(point["samples"]) for point in longest])
+    errors = np.array(
+        [
+            np.interp(
+                samples, [p["samples"] for p in seed["curve"]], [p["rmse"] for p in seed["curve"]]
+            )
+            for seed in seeds
+        ]
+    )
+    if len(seeds) == 1:
+        return LearningCurve(name, samples, errors[0])
+    return LearningCurve(
+        name, samples, np.median(errors, axis=0), errors.min(axis=0), errors.max(axis=0)
+    )
