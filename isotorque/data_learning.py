@@ -137,7 +137,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
         name, task, group, samples.q[order], samples.tau[order], DenseTest(robot, gravity)
     )
     progress(STAGE, 4, 4, "")
-    compared = disagreement(samples.q, samples.tau, gravity)
+    compared = disagreement(samples.q, samples.tau, gravity, leave_out=unfit)
     return LearnedModel(
         robot,
         gravity,
@@ -223,6 +223,7 @@ def _held_out(tried: HeldOut | None) -> dict[str, Any] | None:
 
 def _analytic(compared: Disagreement) -> dict[str, Any]:
     return {
+        "rows": compared.rows,
         "rmse": compared.rmse,
         "rmse_by_joint": compared.rmse_by_joint,
         "mean_by_joint": compared.mean_by_joint,

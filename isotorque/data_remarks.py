@@ -42,8 +42,9 @@ def analytic_remarks(
             robot.joint_names, compared.rmse_by_joint, compared.mean_by_joint, strict=True
         )
     )
+    data = f"data ({compared.rows} rows)"
     said = (
-        f"data less analytic gravity of {robot.name}: {compared.rmse:.4g} N m RMSE, "
+        f"{data} less analytic gravity of {robot.name}: {compared.rmse:.4g} N m RMSE, "
         f"{100 * compared.share:.3g} % of the torques; {joints}; at most "
         f"{compared.largest:.4g} N m (row {compared.row + 1})"
     )

@@ -12,6 +12,7 @@ from isotorque.experiment import (
     DATABASE,
     LEARNING,
     Progress,
+    RunOutcome,
     discover_symmetries,
     random_generator,
     run_info,
@@ -23,6 +24,7 @@ from isotorque.run_options import RunOptions
 from learning.learners.by_name import ONLINE_LEARNERS, LearningTask, learner_by_name
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
+from learning.relations.relation_learning import learn_relations
 from learning.sampling.reachable_lattice import ReachableLattice, reachable_lattice, visit
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
@@ -55,11 +57,11 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
         For a robot or options that cannot be used, and for a directory that holds another run.
     """
     remarks: tuple[str, ...] = ()
-    motions = 0
+    found: RunOutcome | None = None
     if options.symmetries == "learned":
         found = discover_symmetries(options, out, progress)
         robot, gravity, group = found.robot, found.gravity, found.scheme.group
-        motions, remarks = len(found.motions), missing_symmetries(found)
+        remarks = missing_symmetries(found)
     else:
         robot = load_robot(options.robot, snap=options.arm.snap)
         gravity = GravityModel(robot)
@@ -71,6 +73,9 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
         remarks += (f"{share:.3g} % of the orbits lie outside the joint limits and were skipped",)
     if len(lattice.q) != options.samples:
         remarks += (f"{options.samples} samples asked for, a lattice of {len(lattice.q)} taken",)
+    if found is not None:
+        group, more = _with_more_samples(found, q, torque)
+        remarks += more
     learner, curve = fitted_with_curve(
         options.learner, options.task(robot.n), group, q, torque, DenseTest(robot, gravity)
     )
@@ -80,12 +85,30 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
         learner,
         {k: getattr(options, k) for k in ("strategy", "learner", "symmetries")},
         len(q),
-        motions,
+        0 if found is None else len(found.motions),
         1 if group is None else group.order,
         curve,
         remarks,
         {"reachable_share": lattice.reachable},
     )
+
+
+def _with_more_samples(
+    found: RunOutcome, q: Array, torque: Array
+) -> tuple[SymmetryGroup | None, tuple[str, ...]]:
+    """Relations that the lattice shows beside what the discovery showed, and a word on them.
+
+    A lattice was led to places that the arm cannot hold by itself, so it may know better.
+    """
+    group = found.scheme.group
+    known = 1 if group is None else group.order
+    held, torques = found.scheme.samples
+    learned = learn_relations(np.concatenate([held, q]), np.concatenate([torques, torque]))
+    free = learned.group.rank < learned.group.n
+    if learned.order > known or (learned.order == known and (known > 1 or free)):
+        words = f"symmetries: {learned.order} known with the samples of the lattice"
+        return learned.group, (words,) if learned.order > known else ()
+    return group, ()
 
 
 def _sampled(

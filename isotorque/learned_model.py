@@ -101,6 +101,11 @@ def model_of_run(run: RunOutcome) -> LearnedModel:
 def missing_symmetries(run: RunOutcome) -> tuple[str, ...]:
     """Say what the discovery could not find out, if symmetries were to be learned."""
     learned = run.scheme.learned
-    if run.options.symmetries != "learned" or learned is None or learned.missing is None:
+    if run.options.symmetries != "learned":
+        return ()
+    if learned is None:
+        motions = len(run.motions)
+        return (f"symmetries: none known; in {motions} motions no torque was held that shows any",)
+    if learned.missing is None:
         return ()
     return (f"symmetries: {learned.order} known; {learned.missing}",)

@@ -13,8 +13,8 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 FOLDS = 5
-PASSES = 4
-"""Most rounds of looking for outliers after the first."""
+ROUNDS = 3
+"""Most rounds of looking for outliers."""
 SUSPECT, STRICT = 2.0, 4.0
 """Upper spreads of log |error| above the median from which a sample is suspected, and is one."""
 LEAST_SHARE = 0.01
@@ -93,8 +93,9 @@ def held_out(
     a logarithmic scale, and above ``LEAST_SHARE`` of that joint's torques. For normal errors that
     is 5.7 standard deviations; the logarithm allows for learners that are much better among their
     samples than at the edge. As an outlier spoils the models that learn it, whatever is suspected
-    (``SUSPECT``, 2 standard deviations) is left out of training first; what then stands out is
-    left out, the rest comes back, and all are looked at again.
+    (``SUSPECT``, 2 standard deviations) is left out of training first; what then stands out is an
+    outlier, the rest comes back. All this is done again without the outliers, which may have hidden
+    others.
 
     Examples
     --------
@@ -112,16 +113,22 @@ def held_out(
     part = rng.permutation(count) % folds
     outliers = np.zeros(count, dtype=bool)
     errors = _errors(make, samples, torques, part, outliers)
-    found = _stand_out(errors, torques, SUSPECT)
-    for _ in range(PASSES):
-        enough = all(np.any(~found & (part != k)) for k in range(folds))
-        if not enough or np.array_equal(found, outliers):
+    for _ in range(ROUNDS):
+        suspects = outliers | _stand_out(errors, torques, SUSPECT)
+        if np.array_equal(suspects, outliers) or not _enough(~suspects, part):
+            break
+        fair = _errors(make, samples, torques, part, suspects)
+        found = _stand_out(fair, torques, STRICT)
+        if np.array_equal(found, outliers):
             break
         outliers = found
         errors = _errors(make, samples, torques, part, outliers)
-        found = _stand_out(errors, torques, STRICT)
-    # what a last round still left out for no reason is no outlier
-    return HeldOut(errors, outliers & _stand_out(errors, torques, STRICT), folds)
+    return HeldOut(errors, outliers, folds)
+
+
+def _enough(used: Flags, part: NDArray[np.int64]) -> bool:
+    """Whether each part leaves something to train on."""
+    return all(np.any(used & (part != k)) for k in range(int(part.max()) + 1))
 
 
 def _errors(

@@ -18,6 +18,8 @@ class Disagreement:
 
     Attributes
     ----------
+    rows : int
+        Number of samples compared.
     rmse : float
         Root mean square of measured less analytic torques, over samples and joints [N m].
     rmse_by_joint, mean_by_joint : (n,) arrays
@@ -34,6 +36,7 @@ class Disagreement:
         What it would be if the angles were degrees [N m].
     """
 
+    rows: int
     rmse: float
     rmse_by_joint: Array
     mean_by_joint: Array
@@ -44,7 +47,9 @@ class Disagreement:
     rmse_degrees: float
 
 
-def disagreement(q: ArrayLike, torque: ArrayLike, gravity: GravityModel) -> Disagreement:
+def disagreement(
+    q: ArrayLike, torque: ArrayLike, gravity: GravityModel, *, leave_out: ArrayLike | None = None
+) -> Disagreement:
     """Compare measured samples with the gravity torque of a robot.
 
     Parameters
@@ -53,6 +58,8 @@ def disagreement(q: ArrayLike, torque: ArrayLike, gravity: GravityModel) -> Disa
         Configurations [rad] and torques that held them [N m], m at least 1.
     gravity
         The analytic torque.
+    leave_out : (m,) bools, optional
+        Samples that are not compared (outliers); not all of them.
 
     Examples
     --------
@@ -64,17 +71,22 @@ def disagreement(q: ArrayLike, torque: ArrayLike, gravity: GravityModel) -> Disa
     (2.0, 0.0)
     """
     samples, measured = np.asarray(q, dtype=float), np.asarray(torque, dtype=float)
+    numbers = np.arange(len(samples))
+    if leave_out is not None:
+        numbers = np.flatnonzero(~np.asarray(leave_out, dtype=bool))
+    samples, measured = samples[numbers], measured[numbers]
     analytic = gravity.torque(samples)
     difference = measured - analytic
     size = _rms(measured)
     row = int(np.argmax(np.abs(difference).max(axis=1)))
     return Disagreement(
+        rows=len(numbers),
         rmse=_rms(difference),
         rmse_by_joint=np.sqrt(np.mean(difference**2, axis=0)),
         mean_by_joint=difference.mean(axis=0),
         share=_rms(difference) / size if size else 0.0,
         largest=float(np.abs(difference[row]).max()),
-        row=row,
+        row=int(numbers[row]),
         rmse_opposite=_rms(measured + analytic),
         rmse_degrees=_rms(measured - gravity.torque(np.deg2rad(samples))),
     )
