@@ -10,14 +10,18 @@ from numpy.typing import NDArray
 
 from isotorque.experiment import RunOutcome
 from isotorque.paper_targets import paper_targets
+from learning.arm import OutcomeKind
 from learning.learners.by_name import EQUIVARIANT_LEARNERS
 from learning.recordings.run_info import software_versions
+from learning.relations.executable import is_executable
+from learning.static_torques.static_torque_set import StaticTorqueSet
 from symbolic.level_curves import level_curves
 from symbolic.level_sets import level_set
 from verify.figures.learning_curves import LearningCurve
 from verify.figures.planar_links import planar_links
 from verify.learned_symmetries import completeness, judge_relations, judge_symmetries
 from verify.models import ModelJudgement, TargetResult, verify_model
+from verify.run_parts import StaticTorqueReport
 from verify.run_report import LevelSetReport, RunReport, RunSetup, Stage, SymmetryReport
 from verify.run_summary import (
     summarise_discovery,
@@ -25,6 +29,7 @@ from verify.run_summary import (
     summarise_exploration,
     summarise_static_torques,
 )
+from verify.static_torques import MOST_JOINTS, judge_static_torques
 from verify.targets import TargetSet
 from verify.verdict import Verdict
 
@@ -34,6 +39,8 @@ PAPER_RMSE = 0.0053
 """The paper's 2R result [N m] (section 7.1.1), drawn as a line to compare with."""
 CURVE_TOLERANCE = 0.01
 """Accuracy of the curves in pictures [N m]: finer than a line is wide."""
+STATIC_TORQUES = 1000
+"""Random torques that the set of static torques is judged with."""
 EQUIVARIANCE = 1e-9
 """Departure from equivariance that counts as none [N m]."""
 
@@ -59,7 +66,7 @@ def judge_run(run: RunOutcome) -> RunReport:
         stages=_stages(run),
         symmetry=symmetry,
         discovery=summarise_discovery(run.motions, run.scheme.gates, run.options.n_min),
-        static_torques=summarise_static_torques(run.scheme.static_torques),
+        static_torques=_static_torques(run),
         domain=None if run.scheme.domain is None else summarise_domain(run.scheme.domain),
         exploration=summarise_exploration(run.steps, run.scheme.group),
         curves=_curves(run),
@@ -122,8 +129,39 @@ def _symmetry(run: RunOutcome) -> SymmetryReport | None:
     if run.options.symmetries == "none":
         return None
     if run.options.symmetries == "learned" and scheme.learned is not None:
-        return judge_symmetries(scheme.learned, run.gravity, truth=run.group)
-    return judge_relations(run.group, run.gravity, method="exact", truth=run.group)
+        report = judge_symmetries(scheme.learned, run.gravity, truth=run.group)
+    else:
+        report = judge_relations(run.group, run.gravity, method="exact", truth=run.group)
+    limits = run.arm.limits
+    entries = [
+        replace(entry, executable=is_executable(entry.relation, limits))
+        for entry in report.relations
+    ]
+    return replace(report, relations=tuple(entries))
+
+
+def _static_torques(run: RunOutcome) -> StaticTorqueReport:
+    """Hold the estimated static torques against the true ones, where these can be drawn from."""
+    estimate = run.scheme.static_torques
+    report = summarise_static_torques(estimate)
+    felt = run.robot.n - len(run.gravity.free_joints)
+    if not 1 <= felt <= MOST_JOINTS:
+        return report
+    discovered = StaticTorqueSet(run.robot.n)
+    for outcome in (motion.outcome for motion in run.motions):
+        settled = outcome.kind is OutcomeKind.SETTLED
+        (discovered.add if settled else discovered.mark_inadmissible)(outcome.torque)
+    first, last = (
+        judge_static_torques(
+            torques,
+            run.gravity,
+            run.arm.limits,
+            stable_only=run.options.arm.physics == "open_loop",  # nothing else holds it elsewhere
+            samples=STATIC_TORQUES,
+        )
+        for torques in (discovered, estimate)
+    )
+    return replace(report, discovered=first, judgement=last)
 
 
 def _curves(run: RunOutcome) -> tuple[LearningCurve, ...]:

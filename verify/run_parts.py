@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from symbolic.relations import SymmetryGroup, SymmetryRelation
 from verify.figures.torques import ProfileTrace
+from verify.static_torques import StaticTorqueJudgement
 from verify.verdict import Verdict
 
 Array = NDArray[np.float64]
@@ -67,6 +68,9 @@ class RelationReport:
         What the data say of that error [rad].
     support : int or None
         Number of distinct torques whose recorded configurations obey it.
+    executable : bool or None
+        Whether some configuration within the joint limits has its image within them; else the
+        relation labels torques, and the arm cannot follow it. None where that was not asked.
     """
 
     relation: SymmetryRelation
@@ -77,6 +81,7 @@ class RelationReport:
     offset_error: float | None = None
     standard_error: Array | None = None
     support: int | None = None
+    executable: bool | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,11 +170,17 @@ class StaticTorqueReport:
         Torques the arm settled under, and those that drove it to a limit or a time out [N m].
     triangles : (t, 3, 2) array or None
         Corners of the estimated region [N m]; two joints only.
+    discovered, judgement : StaticTorqueJudgement or None
+        What the estimate has in common with the true set, after discovery and in the end; up to
+        three joints. Exploration keeps to one domain and refuses torques that it could not reach
+        there, so the second may be the smaller one.
     """
 
     admissible: Array
     inadmissible: Array
     triangles: Array | None = None
+    discovered: StaticTorqueJudgement | None = None
+    judgement: StaticTorqueJudgement | None = None
 
 
 @dataclass(frozen=True, eq=False)
