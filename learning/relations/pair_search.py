@@ -27,8 +27,10 @@ LEAST_TORQUES_EXACT = 2
 """The same for a single relation where angles are so exact that nothing agrees by chance."""
 SMALLEST_SHARE = 0.02
 SAME_TORQUE = 1e-6
-SIGMAS = (1e-8, 1e-6, 3e-5, 5e-4, 2e-3, 6e-3, 1.5e-2)
-"""Noise levels of an angle that are tried where none is given [rad]."""
+SIGMAS = (1e-8, 1e-6, 3e-5, 5e-4, 2e-3, 4e-3, 6e-3, 9e-3, 1.35e-2)
+"""Noise levels of an angle that are tried where none is given [rad]; the large ones close to each
+other, for there a level a third too small loses the pairs and one a third too large finds chance
+in them, once every torque has dozens of configurations."""
 PRODUCTS_SEEN = 0.4
 """Mean support of all relations of a group, relative to that of the last one added."""
 MISSED_DEVIATIONS, MISSED_ROUNDING = 25.0, 1e-5
