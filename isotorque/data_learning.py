@@ -15,6 +15,7 @@ from isotorque.lattice_learning import fitted_with_curve
 from isotorque.learned_model import LearnedModel
 from isotorque.learning_curve import DenseTest
 from isotorque.run_options import check_symmetries
+from isotorque.single_thread import single_thread
 from learning.held_out import HeldOut, held_out
 from learning.learners.by_name import LearningTask, check_learner, learner_by_name
 from learning.recordings.csv_data import StaticSamples, read_csv
@@ -32,6 +33,8 @@ Array = NDArray[np.float64]
 
 MANY_ROWS = 1000
 """More samples than these are too many for a Gaussian process by default."""
+EQUATIONS = 2
+"""Equations per coefficient from which the form of rigid gravity is fitted without symmetries."""
 WORST = 10
 """Outliers that are named."""
 STAGE = "learning from data"
@@ -86,6 +89,7 @@ class _Relations:
     remarks: tuple[str, ...] = field(default=())
 
 
+@single_thread()
 def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> LearnedModel:
     """Learn relations and a model from a recording, and say how far it can be trusted.
 
@@ -121,11 +125,16 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     progress(STAGE, 0, 4, "relations")
     everything = np.zeros(len(samples.q), dtype=bool)
     relations = _relations(options, gravity, samples, everything)
+    left_out = everything
+    if options.symmetries == "learned" and relations.group is None:
+        # one wrong row hides every symmetry: look for such rows, and then again for symmetries
+        left_out = _screened(name, task, samples)
+        if left_out.any():
+            relations = _relations(options, gravity, samples, left_out)
     progress(STAGE, 1, 4, "errors on held out rows")
     tried = _tried(name, relations.group, task, samples)
     unfit = everything if tried is None else tried.outliers
-    if options.symmetries == "learned" and unfit.any():
-        # one wrong row hides every symmetry: look again without them
+    if options.symmetries == "learned" and not np.array_equal(unfit, left_out):
         relations = _relations(options, gravity, samples, unfit)
         tried = _tried(name, relations.group, task, samples)
         unfit = everything if tried is None else tried.outliers
@@ -197,6 +206,14 @@ def _tried(
         return None
     rng = np.random.default_rng(task.seed)
     return held_out(lambda: learner_by_name(name, group, task), samples.q, samples.tau, rng)
+
+
+def _screened(name: str, task: LearningTask, samples: StaticSamples) -> NDArray[np.bool_]:
+    """Outliers by the form of rigid gravity where the rows suffice for it, else by the learner."""
+    rows, joints = samples.q.shape
+    plenty = rows * joints >= EQUATIONS * 3**joints
+    tried = _tried("trigonometric" if plenty else name, None, task, samples)
+    return np.zeros(rows, dtype=bool) if tried is None else tried.outliers
 
 
 def _outliers(tried: HeldOut | None) -> dict[str, Any] | None:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning_curve import CurvePoint, DenseTest, curve_counts
 from isotorque.run_options import LATTICE, ArmOptions, RunOptions
+from isotorque.single_thread import single_thread
 from learning.arm import OutcomeKind
 from learning.exploration.by_name import DIRECTIONS
 from learning.exploration.step import ExplorationStep
@@ -84,6 +85,7 @@ class RunOutcome:
         return {kind: kinds.count(kind) for kind in OutcomeKind}
 
 
+@single_thread()
 def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:
     """Find out what the arm can hold, and its symmetries; resumes what was stopped.
 
@@ -136,6 +138,7 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
     return result
 
 
+@single_thread()
 def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     """Explore and learn the inverse statics model after a discovery; resumes what was stopped.
 

@@ -21,6 +21,7 @@ from isotorque.experiment import (
 from isotorque.learned_model import LearnedModel, missing_symmetries
 from isotorque.learning_curve import CurvePoint, DenseTest, curve_counts
 from isotorque.run_options import RunOptions
+from isotorque.single_thread import single_thread
 from learning.learners.by_name import ONLINE_LEARNERS, LearningTask, learner_by_name
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
@@ -34,6 +35,7 @@ from symbolic.symmetries import primary_symmetries
 Array = NDArray[np.float64]
 
 
+@single_thread()
 def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> LearnedModel:
     """Place the arm at a lattice of configurations, measure torques, learn from all of them.
 
