@@ -15,8 +15,9 @@ Flags = NDArray[np.bool_]
 FOLDS = 5
 ROUNDS = 3
 """Most rounds of looking for outliers."""
-SUSPECT, STRICT = 2.0, 4.0
-"""Upper spreads of log |error| above the median from which a sample is suspected, and is one."""
+SUSPECT, STRICT = (2.0, 3.0), (4.0, 9.0)
+"""From where on a sample is suspected, and is an outlier: in upper spreads of log |error| above the
+median, and in medians of |error|; both are needed."""
 LEAST_SHARE = 0.01
 """Errors below this share of a joint's torques (their 95 % quantile) never stand out."""
 _TINY = 1e-300
@@ -88,14 +89,14 @@ def held_out(
 
     Notes
     -----
-    A sample stands out if the error of one of its torques lies ``STRICT`` spreads above the median
-    of that joint's errors, where the spread is that of the upper quartile over the median, both on
-    a logarithmic scale, and above ``LEAST_SHARE`` of that joint's torques. For normal errors that
-    is 5.7 standard deviations; the logarithm allows for learners that are much better among their
-    samples than at the edge. As an outlier spoils the models that learn it, whatever is suspected
-    (``SUSPECT``, 2 standard deviations) is left out of training first; what then stands out is an
-    outlier, the rest comes back. All this is done again without the outliers, which may have hidden
-    others.
+    A sample stands out if the error of one of its torques is ``STRICT``: 9 times the median of that
+    joint's errors, which for normal errors is 6 standard deviations, and 4 spreads above it on a
+    logarithmic scale, where the spread is that of the upper quartile over the median; this allows
+    for learners that are much better among their samples than at the edge. Besides, it must be
+    above ``LEAST_SHARE`` of that joint's torques. As an outlier spoils the models that learn it,
+    whatever is suspected (``SUSPECT``: 3 times the median, 2 spreads) is left out of training
+    first; what then stands out is an outlier, the rest comes back. All this is done again without
+    the outliers, which may have hidden others.
 
     Examples
     --------
@@ -141,9 +142,10 @@ def _errors(
     return errors
 
 
-def _stand_out(errors: Array, torque: Array, spreads: float) -> Flags:
+def _stand_out(errors: Array, torque: Array, least: tuple[float, float]) -> Flags:
     logs = np.log(np.maximum(np.abs(errors), _TINY))
     middle, upper = np.quantile(logs, [0.5, 0.75], axis=0)
-    least = LEAST_SHARE * np.quantile(np.abs(torque), 0.95, axis=0)
-    bound = np.exp(np.minimum(middle + spreads * (upper - middle), 700.0))
-    return np.asarray((np.abs(errors) > np.maximum(bound, least)).any(axis=1))
+    far = np.maximum(least[0] * (upper - middle), np.log(least[1]))
+    bound = np.exp(np.minimum(middle + far, 700.0))
+    small = LEAST_SHARE * np.quantile(np.abs(torque), 0.95, axis=0)
+    return np.asarray((np.abs(errors) > np.maximum(bound, small)).any(axis=1))
