@@ -25,9 +25,25 @@ if TYPE_CHECKING:
     from learning.arm import Settled as Settled
     from learning.arm import TimedOut as TimedOut
     from learning.discovery import discover as discover
+    from learning.held_out import held_out as held_out
+    from learning.learners.gaussian_process import (
+        SymmetricGaussianProcess as SymmetricGaussianProcess,
+    )
     from learning.learners.local_linear_map import LocalLinearMap as LocalLinearMap
+    from learning.learners.network import FeedForwardNetwork as FeedForwardNetwork
+    from learning.learners.recursive_least_squares import (
+        RecursiveLeastSquares as RecursiveLeastSquares,
+    )
+    from learning.learners.static_regressor import StaticRegressor as StaticRegressor
+    from learning.learners.trigonometric import EquivariantTrigonometric as EquivariantTrigonometric
+    from learning.model_files import SavedModel as SavedModel
+    from learning.model_files import load_model as load_model
+    from learning.model_files import save_model as save_model
+    from learning.recordings.csv_data import StaticSamples as StaticSamples
+    from learning.recordings.csv_data import read_csv as read_csv
     from learning.recordings.recording import Recording as Recording
     from learning.relations.identification import identify as identify
+    from learning.relations.relation_learning import learn_relations as learn_relations
     from learning.scheme import Scheme as Scheme
     from learning.simulation.simulated_arm import SimulatedArm as SimulatedArm
     from learning.static_torques.static_torque_set import StaticTorqueSet as StaticTorqueSet
@@ -52,6 +68,8 @@ __version__ = "0.1.0"
 
 _HOME = {
     "Arm": "learning.arm",
+    "EquivariantTrigonometric": "learning.learners.trigonometric",
+    "FeedForwardNetwork": "learning.learners.network",
     "FundamentalDomain": "symbolic.domain",
     "GravityModel": "symbolic.gravity",
     "InputError": "symbolic.errors",
@@ -62,23 +80,33 @@ _HOME = {
     "OutcomeKind": "learning.arm",
     "ProfileArm": "learning.arm",
     "Recording": "learning.recordings.recording",
+    "RecursiveLeastSquares": "learning.learners.recursive_least_squares",
     "Robot": "symbolic.robots",
+    "SavedModel": "learning.model_files",
     "Scheme": "learning.scheme",
     "Settled": "learning.arm",
     "SimulatedArm": "learning.simulation.simulated_arm",
+    "StaticRegressor": "learning.learners.static_regressor",
+    "StaticSamples": "learning.recordings.csv_data",
     "StaticTorqueSet": "learning.static_torques.static_torque_set",
+    "SymmetricGaussianProcess": "learning.learners.gaussian_process",
     "SymmetryGroup": "symbolic.relations",
     "SymmetryRelation": "symbolic.relations",
     "TimedOut": "learning.arm",
     "TrigonometricPolynomial": "symbolic.trigonometric",
     "Verdict": "verify.verdict",
     "discover": "learning.discovery",
+    "held_out": "learning.held_out",
     "identify": "learning.relations.identification",
+    "learn_relations": "learning.relations.relation_learning",
+    "load_model": "learning.model_files",
     "load_relations": "verify.relation_files",
     "load_robot": "symbolic.robots",
     "maximal_groups": "symbolic.approximate_symmetries",
     "planar_arm": "symbolic.kinematic_tree",
     "primary_symmetries": "symbolic.symmetries",
+    "read_csv": "learning.recordings.csv_data",
+    "save_model": "learning.model_files",
     "verify_model": "verify.models",
     "verify_relation": "verify.relations",
 }
