@@ -115,7 +115,10 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
         gravity = GravityModel(robot)
         group = primary_symmetries(gravity.potential)
     arm = simulated_arm(robot, made_with, 0)
-    info = run_info(robot, arm, made_with, "discover", {"n_min": options.n_min})
+    chosen = {"n_min": options.n_min}
+    if options.confirm:  # recordings that were made without it stay as they are
+        chosen["confirm"] = options.confirm
+    info = run_info(robot, arm, made_with, "discover", chosen)
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
         _timed(clock, "discovery"),
@@ -191,8 +194,8 @@ def save_learner(learner: Any, robot: Robot, notes: dict[str, Any], out: Path) -
     return save_model(saved, out)
 
 
-def recorded_discovery(out: Path) -> tuple[ArmOptions, int] | None:
-    """Return the arm and the n_min of the discovery that ``out`` already holds, if any."""
+def recorded_discovery(out: Path) -> tuple[ArmOptions, int, int] | None:
+    """Return arm, n_min and confirm of the discovery that ``out`` already holds, if any."""
     path = out / DATABASE
     if not path.is_file():
         return None
@@ -202,13 +205,15 @@ def recorded_discovery(out: Path) -> tuple[ArmOptions, int] | None:
                 recorded = part.info.options
                 names = {f.name for f in fields(ArmOptions)}
                 arm = ArmOptions(**{k: v for k, v in recorded["made_with"].items() if k in names})
-                return arm, int(recorded["n_min"])
+                return arm, int(recorded["n_min"]), int(recorded.get("confirm", 0))
     return None
 
 
 def _scheme_settings(options: RunOptions) -> SchemeSettings:
     strategy = DIRECTIONS if options.strategy == LATTICE else options.strategy
-    return SchemeSettings(n_min=options.n_min, samples=options.samples, strategy=strategy)
+    return SchemeSettings(
+        n_min=options.n_min, samples=options.samples, strategy=strategy, confirm=options.confirm
+    )
 
 
 def _learner_factory(options: RunOptions, joints: int) -> LearnerFactory:

@@ -52,15 +52,14 @@ def learn_options(
         asked["physics"] = PhysicsMode.GUIDED.value
     recorded = recorded_discovery(out)
     if recorded is None:
-        arm, n_min = ArmOptions(**asked), 2
+        arm, n_min, confirm = ArmOptions(**asked), 2, 0
         # an arm discovers by itself; it is led only to what it cannot hold
         alone = PhysicsMode.OPEN_LOOP.value
         discovery = replace(arm, physics=alone) if strategy == LATTICE else arm
     else:
-        discovery, n_min = recorded
+        discovery, n_min, confirm = recorded
         arm = replace(discovery, **asked)
         # one robot in one run: the recording refuses another one
         discovery = replace(discovery, snap=arm.snap)
-    return RunOptions(
-        robot, arm, given.get("n_min", n_min), samples, learner, symmetries, strategy, discovery
-    )
+    n_min = given.get("n_min", n_min)
+    return RunOptions(robot, arm, n_min, samples, learner, symmetries, strategy, discovery, confirm)

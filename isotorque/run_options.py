@@ -83,6 +83,8 @@ class RunOptions:
         Which samples are taken: an exploration, or ``lattice``.
     discovery_arm : ArmOptions or None
         The simulated arm of the discovery, where it is another.
+    confirm : int
+        Torques at the end of the discovery that are chosen to say most about the relations.
     """
 
     robot: str
@@ -93,6 +95,7 @@ class RunOptions:
     symmetries: str = "learned"
     strategy: str = DIRECTIONS
     discovery_arm: ArmOptions | None = None
+    confirm: int = 0
 
     def __post_init__(self) -> None:
         check_symmetries(self.symmetries)
@@ -100,6 +103,8 @@ class RunOptions:
             raise InputError("run", "--samples", self.samples, "at least 1")
         if self.n_min < 1:
             raise InputError("run", "--n-min", self.n_min, "at least 1")
+        if self.confirm < 0:
+            raise InputError("run", "--confirm", self.confirm, "at least 0")
         if self.strategy not in STRATEGIES:
             raise InputError("run", "--strategy", self.strategy, ", ".join(STRATEGIES))
         check_learner(self.learner)

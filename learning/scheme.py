@@ -16,6 +16,7 @@ from learning.exploration.explored_share import ExploredShare
 from learning.exploration.loop import Exploration, Learner
 from learning.exploration.settings import ExplorationSettings
 from learning.exploration.step import ExplorationStep
+from learning.relations.active_confirmation import next_torque
 from learning.relations.learned_symmetries import LearnedSymmetries
 from learning.relations.relation_learning import learn_relations
 from learning.static_torques.static_torque_set import StaticTorqueSet
@@ -51,6 +52,8 @@ class SchemeSettings:
         known.
     samples : int
         Torques commanded while learning.
+    confirm : int
+        Torques at the end of the discovery, each chosen to say most about the relations.
     """
 
     discovery: DiscoverySettings = field(default_factory=DiscoverySettings)
@@ -60,11 +63,13 @@ class SchemeSettings:
     max_targets: int = 12
     samples: int = 2000
     strategy: str = DIRECTIONS
+    confirm: int = 0
 
     def __post_init__(self) -> None:
         check_exploration(self.strategy)
-        for name, least in (("n_min", 1), ("confirmations", 0), ("max_targets", 1), ("samples", 1)):
-            if getattr(self, name) < least:
+        positive = ("n_min", "max_targets", "samples")
+        for name in (*positive, "confirmations", "confirm"):
+            if getattr(self, name) < (least := int(name in positive)):
                 raise InputError("scheme", name, getattr(self, name), f"at least {least}")
 
 
@@ -194,7 +199,7 @@ class Scheme:
     # -- the two phases -------------------------------------------------------------------------
 
     def discover(self) -> Iterator[Discovery]:
-        """Babble, then play torque profiles until enough relations are known.
+        """Babble, then play torque profiles until enough relations are known; confirm them.
 
         Yields
         ------
@@ -219,6 +224,19 @@ class Scheme:
                 yield Discovery(target, played.playback.outcome, played.playback, played.new)
             if self._gate():
                 break
+        yield from self._confirm()
+
+    def _confirm(self) -> Iterator[Discovery]:
+        """Command the torques that say most about the relations (active confirmation)."""
+        for _ in range(self.settings.confirm):
+            q, _ = self.samples
+            wanted = None if self.learned is None else next_torque(self.learned, q, self.rng)
+            if wanted is None:
+                break
+            outcome = self.arm.apply(wanted.torque)
+            self._take(outcome)
+            yield Discovery(None, outcome, None, outcome.kind is OutcomeKind.SETTLED)
+            self.learned = learn_relations(*self.samples)
 
     def _gate(self) -> bool:
         """Learn the relations from all settled samples; say whether they suffice."""

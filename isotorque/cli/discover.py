@@ -17,13 +17,14 @@ from isotorque.cli.options import (
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, row
-from isotorque.cli.run_options import NMin
+from isotorque.cli.run_options import Confirm, NMin
 
 
 def discover(
     robot: RobotName,
     out: Out,
     n_min: NMin = 2,
+    confirm: Confirm = 0,
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
     settle: Settle = "finished",
@@ -48,7 +49,7 @@ def discover(
     arm = ArmOptions(
         seed, physics, engine, settle, not no_snap, angle_noise, torque_noise, encoder_step
     )
-    options = RunOptions(robot, arm, n_min)
+    options = RunOptions(robot, arm, n_min, confirm=confirm)
     output_directory(out)
     with progress_bars(quiet) as progress:
         found = discover_symmetries(options, out, progress)

@@ -33,3 +33,9 @@ Symmetries = Annotated[
 NMin = Annotated[
     int, typer.Option("--n-min", min=1, help="Relations needed before learning begins.")
 ]
+Confirm = Annotated[
+    int,
+    typer.Option(
+        "--confirm", min=0, help="Torques at the end, chosen to say most about the relations."
+    ),
+]

@@ -1,4 +1,4 @@
-"""Where to look next: the configuration whose torque says most about an undecided symmetry."""
+"""Where to look next: the configuration whose torque says most about undecided symmetries."""
 
 from __future__ import annotations
 
@@ -11,11 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 from learning.exploration.pull_back import PullBacks
 from learning.relations.candidate_group import CandidateGroup
 from learning.relations.errors_in_variables import stiffness_matrices, torque_features
+from learning.relations.learned_symmetries import LearnedSymmetries
 from learning.relations.potential_fit import FittedPotential
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
 
 Array = NDArray[np.float64]
+
+PROPOSALS = 64
+"""Configurations that are considered."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +46,7 @@ class NextSample:
 
 
 def most_telling_sample(
-    fit: FittedPotential, group: SymmetryGroup, proposals: ArrayLike
+    fit: FittedPotential, group: SymmetryGroup | None, proposals: ArrayLike
 ) -> NextSample:
     """Choose the configuration that best separates a symmetric torque map from an asymmetric one.
 
@@ -50,8 +54,8 @@ def most_telling_sample(
     ----------
     fit : FittedPotential
         What is known so far.
-    group : SymmetryGroup
-        The symmetries in question.
+    group : SymmetryGroup or None
+        The symmetries in question; None where all coefficients are.
     proposals : (m, n) array_like
         Configurations that can be measured [rad]: places where the arm can settle, or any in
         guided operation.
@@ -80,9 +84,10 @@ def most_telling_sample(
     n = fit.frequencies.shape[1]
     if q.ndim != 2 or q.shape[1] != n or not len(q):
         raise InputError("next sample", "shape of proposals", q.shape, f"(m, {n}), m >= 1")
-    candidate = CandidateGroup(group.basis, group.A_sat, group.d_sat, group.Y)
-    average = PullBacks(fit.frequencies, candidate).average()
-    forbidden = np.eye(len(average)) - average
+    forbidden = np.eye(len(fit.coefficients))
+    if group is not None:
+        candidate = CandidateGroup(group.basis, group.A_sat, group.d_sat, group.Y)
+        forbidden = forbidden - PullBacks(fit.frequencies, candidate).average()
     root = forbidden @ np.linalg.inv(fit.root)  # V = root root^T
     acting = fit.frequencies.any(axis=0)
     effect = torque_features(fit.frequencies, q)[:, acting] @ root
@@ -94,6 +99,44 @@ def most_telling_sample(
     best = int(information.argmax())
     torque = torque_features(fit.frequencies, q[best : best + 1])[0] @ fit.coefficients
     return NextSample(q[best].copy(), torque, float(information[best]), best)
+
+
+def next_torque(
+    learned: LearnedSymmetries, settled: ArrayLike, rng: np.random.Generator
+) -> NextSample | None:
+    """Choose the torque that an arm without a controller should be given next.
+
+    Parameters
+    ----------
+    learned : LearnedSymmetries
+        What its settled samples say so far.
+    settled : (m, n) array_like
+        Configurations it has settled in [rad].
+    rng : numpy.random.Generator
+        Source of proposals.
+
+    Returns
+    -------
+    NextSample or None
+        To be commanded: its ``torque``. None where no potential could be fitted, or it expects
+        the arm to rest at none of the proposals.
+
+    Notes
+    -----
+    Proposals lie between configurations the arm has settled in, where the fitted potential is
+    stable. Where no relation is claimed yet, all coefficients are in question.
+    """
+    seen, fit = np.asarray(settled, dtype=float), learned.fit
+    if fit is None or len(seen) < 2:
+        return None
+    first, second = seen[rng.integers(len(seen), size=(2, PROPOSALS))]
+    between = first + rng.random((PROPOSALS, 1)) * wrap(second - first)
+    acting = fit.frequencies.any(axis=0)
+    stiffness = stiffness_matrices(fit.frequencies, fit.coefficients, between)
+    stable = np.linalg.eigvalsh(stiffness[:, acting][:, :, acting])[:, 0] > 0.0
+    if not stable.any():
+        return None
+    return most_telling_sample(fit, learned.group if learned.order > 1 else None, between[stable])
 
 
 class Released(Protocol):

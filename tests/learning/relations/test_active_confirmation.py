@@ -1,10 +1,18 @@
 import numpy as np
 import pytest
 
-from learning.relations.active_confirmation import confirm_by_release, most_telling_sample
-from learning.relations.errors_in_variables import MeasurementNoise
+from learning.discovery import DiscoverySettings
+from learning.physics import MeasurementNoise as SensorNoise
+from learning.relations.active_confirmation import (
+    confirm_by_release,
+    most_telling_sample,
+    next_torque,
+)
+from learning.relations.errors_in_variables import MeasurementNoise, torque_features
 from learning.relations.identification import identify
 from learning.relations.potential_fit import all_frequencies, fit_potential
+from learning.relations.relation_learning import learn_relations
+from learning.scheme import Scheme, SchemeSettings
 from learning.simulation.simulated_arm import SimulatedArm
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryRelation
@@ -85,3 +93,66 @@ def test_no_proposals_are_refused():
     _, _, fit, group, _ = noisy_fit(rng, 8)
     with pytest.raises(InputError, match="shape of proposals"):
         most_telling_sample(fit, group, np.zeros((0, 2)))
+
+
+def discovered(confirm, seed=1):
+    """A discovery that is too short for its noise, and some chosen torques."""
+    noise = SensorNoise(np.deg2rad(0.3))
+    arm = SimulatedArm(load_robot("2r"), noise=noise, rng=np.random.default_rng(seed + 50))
+    settings = SchemeSettings(
+        confirm=confirm, max_targets=2, discovery=DiscoverySettings(babbling=20)
+    )
+    scheme = Scheme(arm, np.random.default_rng(seed), lambda group, span: None, settings)
+    return scheme, list(scheme.discover())
+
+
+def test_chosen_torques_decide_what_a_short_discovery_left_open():
+    short, before = discovered(0)
+    assert short.learned.order == 1
+    assert "more samples" in short.learned.missing
+    scheme, motions = discovered(20)
+    assert len(motions) == len(before) + 20
+    for motion, earlier in zip(motions, before, strict=False):
+        np.testing.assert_array_equal(motion.outcome.q, earlier.outcome.q)
+    chosen = motions[len(before) :]
+    assert all(motion.target is None and motion.playback is None for motion in chosen)
+    assert scheme.learned.missing is None
+    assert scheme.learned.order == 8
+    again, repeated = discovered(20)
+    np.testing.assert_array_equal(again.samples[0], scheme.samples[0])
+    assert len(repeated) == len(motions)
+
+
+def test_the_next_torque_is_one_the_arm_should_hold():
+    potential, _ = known_potential("2r")
+    rng = np.random.default_rng(0)
+    q, tau = stable_samples(potential, rng, 8)
+    for count in (6, 8):
+        learned = learn_relations(q[:count], tau[:count])
+        found = next_torque(learned, q[:count], rng)
+        assert np.linalg.eigvalsh(potential.hessian(found.q)).min() > 0.0
+        np.testing.assert_allclose(found.torque, potential.gradient(found.q), atol=1e-6)
+
+
+def test_without_a_fit_there_is_no_next_torque():
+    potential, _ = known_potential("2r")
+    q, tau = stable_samples(potential, np.random.default_rng(0), 3)
+    learned = learn_relations(q, tau)
+    assert learned.fit is None
+    assert next_torque(learned, q, np.random.default_rng(0)) is None
+
+
+def test_where_nothing_is_claimed_all_coefficients_are_in_question():
+    rng = np.random.default_rng(4)
+    _, _, fit, _, potential = noisy_fit(rng, 10)
+    proposals, _ = stable_samples(potential, rng, 30)
+    found = most_telling_sample(fit, None, proposals)
+    information = []
+    for q in proposals:  # entropy of what a measurement there would show, less that of its noise
+        feature = torque_features(fit.frequencies, q[None])[0]
+        stiffness = fit.potential.hessian(q)
+        noise = fit.noise.torque**2 * np.eye(2) + fit.noise.angle**2 * stiffness @ stiffness.T
+        predicted = noise + feature @ fit.covariance @ feature.T
+        information.append(0.5 * np.log(np.linalg.det(predicted) / np.linalg.det(noise)))
+    assert found.index == np.argmax(information)
+    assert found.information == pytest.approx(max(information))
