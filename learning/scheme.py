@@ -20,6 +20,7 @@ from learning.relations.active_confirmation import next_torque
 from learning.relations.learned_symmetries import LearnedSymmetries
 from learning.relations.relation_learning import learn_relations
 from learning.static_torques.static_torque_set import StaticTorqueSet
+from learning.static_torques.visited_torques import visited_torques
 from symbolic.domain import FundamentalDomain
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryGroup
@@ -54,6 +55,9 @@ class SchemeSettings:
         Torques commanded while learning.
     confirm : int
         Torques at the end of the discovery, each chosen to say most about the relations.
+    from_trajectories : bool
+        Whether the static torques of configurations passed by are admitted too, once the
+        relations are known (`visited_torques`).
     """
 
     discovery: DiscoverySettings = field(default_factory=DiscoverySettings)
@@ -64,6 +68,7 @@ class SchemeSettings:
     samples: int = 2000
     strategy: str = DIRECTIONS
     confirm: int = 0
+    from_trajectories: bool = False
 
     def __post_init__(self) -> None:
         check_exploration(self.strategy)
@@ -156,6 +161,7 @@ class Scheme:
         self.exploration: Exploration | None = None
         self._make_learner, self._given, self._use = make_learner, group, use_symmetries
         self._seen: list[Array] = []
+        self._trajectories: list[Array] = []
         self._settled_q: list[Array] = []
         self._settled_torque: list[Array] = []
 
@@ -221,10 +227,21 @@ class Scheme:
             self.targets.append(target)
             for played in discover(self.arm, target, self.torque_range, self.rng, settings):
                 self._take(played.playback.outcome)
+                self._trajectories.append(np.asarray(played.playback.q))
                 yield Discovery(target, played.playback.outcome, played.playback, played.new)
             if self._gate():
                 break
         yield from self._confirm()
+        self._take_trajectories()
+
+    def _take_trajectories(self) -> None:
+        """Admit the torques that would have held the arm where it passed by."""
+        known = self.learned
+        if not self.settings.from_trajectories or known is None or known.missing is not None:
+            return
+        if known.fit is not None:
+            for trajectory in self._trajectories:
+                self.static_torques.add(visited_torques(known.fit, trajectory))
 
     def _confirm(self) -> Iterator[Discovery]:
         """Command the torques that say most about the relations (active confirmation)."""

@@ -1,0 +1,57 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from learning.relations.potential_fit import all_frequencies, fit_potential
+from learning.scheme import Scheme, SchemeSettings
+from learning.simulation.simulated_arm import SimulatedArm
+from learning.static_torques.visited_torques import visited_torques
+from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
+from symbolic.robots import load_robot
+from tests.learning.static_data import known_potential, stable_samples
+from verify.static_torques import judge_static_torques
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(0.02, 0.5))
+def test_each_torque_holds_the_arm_somewhere_on_its_way(seed, spacing):
+    potential, _ = known_potential("2r")
+    rng = np.random.default_rng(seed)
+    q, tau = stable_samples(potential, rng, 8)
+    fit = fit_potential(q, tau, all_frequencies(2))
+    way = np.cumsum(rng.normal(scale=0.03, size=(300, 2)), axis=0) + rng.uniform(-3, 3, 2)
+    found = visited_torques(fit, way, spacing=spacing)
+    stable = way[np.linalg.eigvalsh(potential.hessian(way)).min(axis=1) > 0]
+    there = potential.gradient(stable).reshape(1, -1, 2)
+    assert (np.abs(found[:, None] - there).max(axis=2).min(axis=1, initial=np.inf) < 1e-6).all()
+    # nothing between two of them that is farther than the spacing from both is left out
+    taken = visited_torques(fit, way, spacing=1e-12)
+    assert len(found) <= len(taken) == len(stable)
+
+
+def test_nothing_visited_and_wrong_joints():
+    potential, _ = known_potential("2r")
+    q, tau = stable_samples(potential, np.random.default_rng(0), 8)
+    fit = fit_potential(q, tau, all_frequencies(2))
+    assert visited_torques(fit, np.empty((0, 2))).shape == (0, 2)
+    with pytest.raises(InputError, match="shape of q"):
+        visited_torques(fit, np.zeros((4, 3)))
+
+
+def test_trajectories_make_the_set_larger_and_hardly_false():
+    robot = load_robot("2r")
+    gravity = GravityModel(robot)
+    judged = {}
+    for given_trajectories in (False, True):
+        settings = SchemeSettings(from_trajectories=given_trajectories)
+        rng = np.random.default_rng(0)
+        scheme = Scheme(SimulatedArm(robot), rng, lambda group, span: None, settings)
+        motions = list(scheme.discover())
+        judged[given_trajectories] = judge_static_torques(
+            scheme.static_torques, gravity, robot.limits, samples=1000
+        )
+    assert judged[True].coverage > judged[False].coverage + 0.03
+    assert judged[True].false_share < 0.02
+    assert judged[True].worst_outside < 0.5
+    assert len(motions) > 100
