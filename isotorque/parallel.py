@@ -159,7 +159,7 @@ def on_cluster(
         raise InputError(
             "parallel", "--scheduler", address, f"the address of a Dask scheduler ({error})"
         ) from None
-    with client:
+    with client, client.as_current():
         futures: dict[Any, int] = {
             client.submit(work, task, pure=False, priority=-place): place
             for place, task in enumerate(tasks)

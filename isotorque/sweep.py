@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from threadpoolctl import threadpool_limits
 
 from isotorque.cli.files import output_directory, write_whole
 from isotorque.experiment import run_experiment
@@ -54,7 +55,7 @@ def perform_run(run: SweepRun) -> dict[str, Any]:
         run.robot, ArmOptions(run.seed), learner=run.learner, symmetries=run.symmetries,
         samples=run.samples,
     )  # fmt: skip
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
         result = run_experiment(options, Path(folder), lambda stage, done, total, note: None)
     lost = sum(str(step.outcome.kind) != "settled" for step in result.steps)
     return {

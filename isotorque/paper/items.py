@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from isotorque.paper.items_batch import BATCH_2R, BATCH_3R
-from isotorque.paper.items_online import ONLINE_2R, ONLINE_3R, TIMES
+from isotorque.paper.items_online import FACTOR, ONLINE_2R, ONLINE_3R, TIMES
 from isotorque.paper.items_statics import (
     BCTS,
     DISCOVERY_2R,
@@ -22,6 +22,7 @@ ITEMS = (
     *STATIC_TORQUES,
     *RANGES_2R,
     *ONLINE_2R,
+    *FACTOR,
     *TIMES,
     *RANGES_3R,
     *ONLINE_3R,

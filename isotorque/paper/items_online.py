@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from isotorque.paper import published as paper
+from isotorque.paper.equal_errors import samples_needed
 from isotorque.paper.reading import number, percent, settings_differ, text
 from isotorque.paper.rules import at_least, at_most, equal
 from isotorque.paper.table import Item, Numbers, Value
@@ -99,6 +100,25 @@ ONLINE_2R = (
             "d leave a floor of 6 to 19 mN m however many samples there are"
         ),
         {"dense set": number("printed_rmse_dense")},
+    ),
+)  # fmt: skip
+
+
+def _more_samples(numbers: Numbers) -> float:
+    """Iterations of the LLM for the error of LLM_it after 30, over 30; at least, if never."""
+    goal = numbers["iterated-2r.rmse_dense"]
+    samples, errors = (numbers[f"literal-2r.curve_{key}"] for key in ("samples", "dense"))
+    needed = samples_needed(dict(zip(samples, errors, strict=True)), goal)
+    return (needed or samples[-1]) / (paper.ITERATIONS_LLM_IT * paper.SAMPLES_PER_ITERATION)
+
+
+FACTOR = (
+    Item(
+        "samples of the LLM over those of LLM_it for the error of LLM_it after 30 iterations, "
+        "dense set", "7.1.1, Fig. 13", "literal-2r+iterated-2r", _more_samples,
+        paper.FACTOR_LLM_IT, "", at_least(SLACK),
+        lambda n: f"that error is {text(n['iterated-2r.rmse_dense'])} N m, and the LLM comes there",
+        {"error [N m]": number("iterated-2r.rmse_dense")},
     ),
 )  # fmt: skip
 

@@ -63,8 +63,8 @@ def structure_picture(data: Data) -> Iterator[Picture]:
     """Draw Fig. 9 from the experiment ``ranges-3r``."""
     skeleton = data["skeleton"]
     yield Picture(
-        "fig9", "3r", "Structure of the 3R arm at q = 0: axis 1 along the stretched arm and "
-        "horizontal, axes 2 and 3 parallel and perpendicular to it.",
+        "fig9", "3r", "Structure of the 3R arm: axis 1 horizontal, along the arm stretched out at "
+        "q = 0; axes 2 and 3 parallel, perpendicular to it.",
         arm_structure(
             skeleton["joints"], skeleton["axes"], skeleton["centres"][-1], skeleton["masses"][-1]
         ),

@@ -18,6 +18,8 @@ from verify.figures.torques import (
 from verify.report_figures import Picture
 
 Data = Mapping[str, Any]
+LINEAR_TOP = 0.03
+"""Upper end of the linear axis of Fig. 13 [N m]: beyond it curves are about to fall."""
 
 
 def discovery_pictures(data: Data) -> Iterator[Picture]:
@@ -79,7 +81,7 @@ def learning_pictures(
             + (", logarithmic axes." if logarithmic else "."),
             learning_curves(
                 curves, logarithmic=logarithmic, iteration=size, published=printed,
-                goal=paper.RMSE_66 if logarithmic else None,
+                goal=paper.RMSE_66 if logarithmic else None, top=LINEAR_TOP,
             ),
         )  # fmt: skip
 

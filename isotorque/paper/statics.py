@@ -11,7 +11,7 @@ from symbolic.domain import FundamentalDomain
 from symbolic.gravity import GravityModel
 from symbolic.level_curves import level_curves
 from symbolic.level_sets import level_set
-from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
+from symbolic.relations import SymmetryGroup, SymmetryRelation
 from symbolic.robots import Robot
 from symbolic.symmetries import primary_symmetries
 from verify.counterexamples import largest_value
@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 FIGURE_SHARE = 0.4
 """The torque of Fig. 1 and 2, as a share of the torque range: far from folds, easy to read."""
 TORQUES_TRIED = 200
+POSTURE = (0.0, 0.35, 0.75)
+"""The arm is drawn like this in Fig. 9: bent, so that its axes can be told apart [rad]."""
 CURVE_TOLERANCE = 0.01
 
 
@@ -93,13 +95,14 @@ def _judge_map(rows: tuple[tuple[int, ...], ...], gravity: GravityModel) -> tupl
     The paper prints configurations, not the signs of their torques.
     """
     table = np.array(rows)
-    signs = [(1, 1), (-1, -1), (1, -1), (-1, 1)]
-    tries = [
-        (verify_relation(SymmetryRelation(table[:, :2], np.pi * table[:, 2], Y), gravity), Y)
-        for Y in signs
-    ]
-    verdict, best = min(tries, key=lambda entry: entry[0].worst_error)
-    return float(verdict.worst_error), list(best)
+    tries = []
+    for signs in ((1, 1), (-1, -1), (1, -1), (-1, 1)):
+        relation = SymmetryRelation(table[:, :2], np.pi * table[:, 2], signs)
+        verdict = verify_relation(relation, gravity)
+        tries.append((float(verdict.worst_error), list(signs)))
+        if verdict.passed:
+            break
+    return min(tries)
 
 
 def measure_domain(robot: Robot, seed: int, effort: Effort) -> Measured:
@@ -165,13 +168,14 @@ def torque_range(robot: Robot, gravity: GravityModel) -> tuple[Array, Array]:
 
 
 def skeleton(robot: Robot) -> dict[str, Array]:
-    """Return joint positions, axes and centres of mass at q = 0, in the world frame [m]."""
+    """Return joint positions, axes and centres of mass at `POSTURE`, in the world frame [m]."""
     import pinocchio as pin
 
     data = robot.model.createData()
-    pin.forwardKinematics(robot.model, data, np.zeros(robot.n))
+    posture = np.resize(POSTURE, robot.n)
+    pin.forwardKinematics(robot.model, data, posture)
     frames = list(data.oMi)[1:]
-    axes = pin.computeJointJacobians(robot.model, data, np.zeros(robot.n))
+    axes = pin.computeJointJacobians(robot.model, data, posture)
     levers = [inertia.lever for inertia in list(robot.model.inertias)[1:]]
     return {
         "joints": np.array([frame.translation for frame in frames]),
@@ -179,8 +183,3 @@ def skeleton(robot: Robot) -> dict[str, Array]:
         "masses": np.array([inertia.mass for inertia in list(robot.model.inertias)[1:]]),
         "centres": np.array([f.act(c) for f, c in zip(frames, levers, strict=True)]),
     }
-
-
-def wrapped(q: Array) -> Array:
-    """Return angles in (-pi, pi] [rad]."""
-    return np.asarray(wrap(q))

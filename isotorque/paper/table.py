@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from isotorque.paper.rules import Rule
 from symbolic.errors import InputError
 
@@ -27,7 +29,7 @@ class Item:
     section : str
         Where it stands in the paper.
     experiment : str
-        Name of the experiment that measures it.
+        Name of the experiment that measures it, or several names joined by ``+``.
     value : callable
         Takes ours out of the numbers of that experiment.
     paper : number, nested sequence of numbers, or str
@@ -104,8 +106,21 @@ def make_rows(items: Sequence[Item], measured: Mapping[str, Sequence[Numbers]]) 
     InputError
         If a row does not hold and says nothing of why.
     """
+    rows = []
+    for item in items:
+        names = item.experiment.split("+")
+        if all(measured.get(name) for name in names):
+            rows.append(_row(item, _together(names, measured)))
+    return rows
+
+
+def _together(names: Sequence[str], measured: Mapping[str, Sequence[Numbers]]) -> list[Numbers]:
+    """Return the numbers of each seed; of several experiments as ``experiment.number``."""
+    if len(names) == 1:
+        return list(measured[names[0]])
     return [
-        _row(item, measured[item.experiment]) for item in items if measured.get(item.experiment)
+        {f"{name}.{key}": x for name, of in zip(names, seed, strict=True) for key, x in of.items()}
+        for seed in zip(*(measured[name] for name in names), strict=True)
     ]
 
 
@@ -139,8 +154,8 @@ def _row(item: Item, seeds: Sequence[Numbers]) -> Row:
 
 def _middle(values: Sequence[Any]) -> tuple[Any, tuple[float | None, float | None] | None]:
     """Return the median and the extremes; of lists the first, which are the same on all seeds."""
-    if any(isinstance(value, list | tuple | str) for value in values):
-        return values[0], None
+    if any(isinstance(value, list | tuple | str | np.ndarray) for value in values):
+        return np.asarray(values[0]).tolist(), None
     numbers = [math.inf if value is None else float(value) for value in values]
     middle = statistics.median_low(numbers) if math.inf in numbers else statistics.median(numbers)
     if len(numbers) == 1:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import Any
+
+from threadpoolctl import threadpool_limits
 
 from isotorque.cli.output import plain
 from isotorque.paper.experiments import experiment
@@ -40,7 +41,7 @@ def perform(piece: Piece) -> dict[str, Any]:
 
     The same piece gives the same result wherever it is done (times apart).
     """
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
     chosen = experiment(piece.experiment)
-    measured = chosen.measure(load_robot(chosen.robot), piece.seed, Effort(piece.share))
+    with threadpool_limits(1):  # arrays are small: threads would only wait for each other
+        measured = chosen.measure(load_robot(chosen.robot), piece.seed, Effort(piece.share))
     return {"numbers": plain(measured.numbers), "pictures": plain(measured.pictures)}

@@ -56,6 +56,7 @@ def learning_curves(
     logarithmic: bool = True,
     iteration: int | None = None,
     published: Sequence[tuple[float, float]] = (),
+    top: float | None = None,
 ) -> Figure:
     """Draw torque RMSE against samples (Fig. 13).
 
@@ -71,6 +72,8 @@ def learning_curves(
         Samples per iteration: the lower axis then counts iterations, as the paper's does.
     published
         Samples and torque errors [N m] printed elsewhere, drawn as marks to compare with.
+    top
+        Upper end of a linear axis of errors [N m]; all errors by default.
 
     Returns
     -------
@@ -88,7 +91,7 @@ def learning_curves(
         if logarithmic:
             _logarithmic(ax, curves)
         else:
-            ax.set_ylim(bottom=0.0)
+            ax.set_ylim(bottom=0.0, top=top)
         ax.set_xlabel("samples" if iteration is None else f"iterations of {iteration} samples")
         _finish(ax, bool(curves))
         return figure

@@ -1,0 +1,298 @@
+"""The paper's table: rules, rows that follow the robot, files that are gone on with."""
+
+import json
+import math
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from threadpoolctl import threadpool_limits
+
+from isotorque.cli.main import status
+from isotorque.paper import run as paper_run
+from isotorque.paper.batch import measure_batch_2r
+from isotorque.paper.discovery import measure_discovery
+from isotorque.paper.equal_errors import samples_needed
+from isotorque.paper.experiments import EXPERIMENTS, experiments_of
+from isotorque.paper.items import ITEMS
+from isotorque.paper.measured import Effort
+from isotorque.paper.page import paper_pictures, render_page, write_pages
+from isotorque.paper.parts import Parts
+from isotorque.paper.rules import above, at_least, at_most, below, close_to, equal, within
+from isotorque.paper.run import Comparison, PaperOptions, compare
+from isotorque.paper.statics import measure_domain, measure_ranges, measure_symmetries
+from isotorque.paper.table import Item, make_rows
+from isotorque.paper.text import markdown
+from symbolic.errors import InputError
+from symbolic.robots import load_robot
+
+CHEAP = {"symmetries-2r", "domain-2r", "ranges-2r", "ranges-3r"}
+positive = st.floats(1e-6, 1e6)
+
+
+def quiet(*_):
+    pass
+
+
+def heavier(name, factor=2.0):
+    model = pin.Model(load_robot(name).model)
+    for joint in range(1, model.njoints):
+        body = model.inertias[joint]
+        model.inertias[joint] = pin.Inertia(factor * body.mass, body.lever, factor * body.inertia)
+    model.name = name
+    return load_robot(model)
+
+
+def item(rule, paper=1.0, why=lambda numbers: "because", **more):
+    return Item("x", "1", "e", lambda n: n["x"], paper, "", rule, why, **more)
+
+
+def ours(rows):
+    return {row.item: row.ours for row in rows}
+
+
+# -- rules and rows ----------------------------------------------------------------------------
+
+
+@given(positive, positive, st.floats(0.0, 0.9))
+def test_rules_say_what_they_say(paper, measured, slack):
+    assert at_most(slack).holds(paper, measured) == (measured <= paper * (1 + slack))
+    assert at_least(slack).holds(paper, measured) == (measured >= paper * (1 - slack))
+    assert within(slack).holds(paper, measured) == (abs(measured - paper) <= slack * paper)
+    assert below(paper, "").holds("words", measured) == (measured < paper)
+    assert above(paper, "").holds("words", measured) == (measured > paper)
+    assert equal().holds(paper, paper)
+
+
+@pytest.mark.parametrize("missing", [None, math.inf, math.nan])
+def test_what_was_not_reached_holds_no_rule(missing):
+    for rule in (at_most(), at_least(), within(0.5), below(1e9, ""), above(-1.0, "")):
+        assert not rule.holds(1.0, missing)
+
+
+def test_lists_are_compared_entry_by_entry():
+    assert close_to(0.1, "").holds([[0.0, 1.0]], [[0.05, 1.0]])
+    assert not close_to(0.1, "").holds([[0.0, 1.0]], [[0.2, 1.0]])
+    assert not close_to(0.1, "").holds([0.0, 1.0], [0.0])
+
+
+@given(st.lists(st.floats(0.0, 10.0), min_size=1, max_size=9))
+def test_a_row_shows_the_median_and_the_extremes(values):
+    (row,) = make_rows([item(at_most(), 5.0)], {"e": [{"x": v} for v in values]})
+    assert row.ours == pytest.approx(np.median(values))
+    assert row.holds == (np.median(values) <= 5.0)
+    assert (row.interval is None) == (len(values) == 1)
+    if row.interval is not None:
+        assert row.interval == (min(values), max(values))
+
+
+def test_a_seed_that_did_not_reach_it_counts_as_worst():
+    (row,) = make_rows([item(at_most(), 5.0)], {"e": [{"x": 1.0}, {"x": None}, {"x": 2.0}]})
+    assert row.ours == 2.0
+    assert row.interval == (1.0, None)
+    (row,) = make_rows([item(at_most(), 5.0)], {"e": [{"x": None}, {"x": None}, {"x": 2.0}]})
+    assert row.ours is None
+    assert not row.holds
+
+
+def test_a_row_that_does_not_hold_must_say_why():
+    (row,) = make_rows([item(at_most(), why=lambda n: f"it is {n['x']:g}")], {"e": [{"x": 2.0}]})
+    assert row.why == "it is 2"
+    with pytest.raises(InputError, match="reason"):
+        make_rows([item(at_most(), why=lambda n: " ")], {"e": [{"x": 2.0}]})
+    (row,) = make_rows([item(at_most())], {"e": [{"x": 0.5}]})
+    assert row.why == ""
+
+
+def test_a_row_of_two_experiments_takes_numbers_seed_by_seed():
+    both = Item("x", "1", "a+b", lambda n: n["a.x"] - n["b.x"], 0, "", equal(), lambda n: "differ")
+    assert make_rows([both], {"a": [{"x": 1}]}) == []
+    (row,) = make_rows([both], {"a": [{"x": 3}, {"x": 5}], "b": [{"x": 1}, {"x": 1}]})
+    assert row.interval == (2.0, 4.0)
+
+
+def test_every_row_belongs_to_an_experiment():
+    names = {entry.name for entry in EXPERIMENTS}
+    assert len(names) == len(EXPERIMENTS)
+    assert {name for entry in ITEMS for name in entry.experiment.split("+")} == names
+
+
+@given(st.dictionaries(st.integers(1, 10**6), positive, min_size=1), positive)
+def test_samples_needed_lie_between_enough_and_too_few(curve, error):
+    found = samples_needed(curve, error)
+    counts = sorted(curve)
+    if found is None:
+        assert curve[counts[-1]] > error
+    else:
+        assert counts[0] <= found <= counts[-1] * (1 + 1e-12)
+        assert all(curve[n] <= error for n in counts if n >= found * (1 + 1e-12))
+
+
+# -- what is measured --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["2r", "3r"])
+def test_doubled_masses_double_the_torques_of_the_table(name):
+    entries = [entry for entry in ITEMS if entry.experiment == f"ranges-{name}"]
+    tables = [
+        make_rows(entries, {f"ranges-{name}": [measure_ranges(robot, 0, Effort()).numbers]})
+        for robot in (load_robot(name), heavier(name))
+    ]
+    first, second = map(ours, tables)
+    torques = [key for key in first if "torque" in key]
+    assert len(torques) == 2 * load_robot(name).n
+    for key in torques:
+        assert second[key] == pytest.approx(2 * first[key], rel=1e-6)
+    assert not any(row.holds for row in tables[1] if "torque" in row.item)
+    assert all(row.why for row in tables[1] if not row.holds)
+
+
+def test_other_masses_change_what_is_learned():
+    with threadpool_limits(1):
+        errors = [
+            measure_batch_2r(robot, 0, Effort(0.01)).numbers["rmse_dense"]
+            for robot in (load_robot("2r"), heavier("2r"))
+        ]
+    assert errors[0] != pytest.approx(errors[1], rel=0.05)
+
+
+def test_other_masses_change_the_secondary_symmetries():
+    shifted = pin.Model(load_robot("2r").model)
+    body = shifted.inertias[2]
+    shifted.inertias[2] = pin.Inertia(3.0 * body.mass, body.lever, 3.0 * body.inertia)
+    light, heavy = (
+        measure_symmetries(robot, 0, Effort(0.2)).numbers
+        for robot in (load_robot("2r"), load_robot(shifted))
+    )
+    assert light["order"] == heavy["order"] == 8
+    assert light["share_of_most"] != heavy["share_of_most"]
+
+
+def test_eight_printed_maps_hold_and_a_wrong_one_does_not(monkeypatch):
+    found = measure_symmetries(load_robot("2r"), 0, Effort(0.05)).numbers
+    assert max(found["map_errors"]) < 1e-12
+    wrong = (((1, 0, 0), (0, -1, 0)),)
+    monkeypatch.setattr("isotorque.paper.statics.PRINTED_MAPS", wrong)
+    found = measure_symmetries(load_robot("2r"), 0, Effort(0.05)).numbers
+    assert min(found["map_errors"]) > 0.1
+
+
+def test_the_domain_is_the_printed_parallelogram():
+    found = measure_domain(load_robot("2r"), 0, Effort()).numbers
+    assert found["corner_count"] == 4
+    assert found["corner_error"] < 1e-12
+
+
+def test_discovery_counts_what_the_arm_found():
+    found = measure_discovery(load_robot("2r"), 3, Effort(0.2)).numbers
+    assert found["relations"] == 8
+    assert found["false_relations"] == 0
+    assert 1 <= found["discovered"] <= found["most_discovered"] <= found["most_stable_members"] == 4
+
+
+# -- files and the command ---------------------------------------------------------------------
+
+
+@pytest.fixture
+def cheap(monkeypatch):
+    """Only experiments of a second."""
+    chosen = tuple(entry for entry in EXPERIMENTS if entry.name in CHEAP)
+    monkeypatch.setattr(paper_run, "experiments_of", lambda part: chosen)
+
+
+def test_interrupted_and_resumed_the_table_is_the_same(cheap, tmp_path, monkeypatch):
+    options = PaperOptions(seeds=2, share=0.05, jobs=1)
+    whole = compare(options, tmp_path / "whole", quiet)
+    done, real = [], paper_run.perform
+
+    def interrupted(piece):
+        if len(done) == 3:
+            raise KeyboardInterrupt
+        done.append(piece)
+        return real(piece)
+
+    monkeypatch.setattr(paper_run, "perform", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        compare(options, tmp_path / "cut", quiet)
+    assert len(list((tmp_path / "cut" / "parts").iterdir())) == 3
+    again = []
+    monkeypatch.setattr(paper_run, "perform", lambda piece: again.append(piece) or real(piece))
+    resumed = compare(options, tmp_path / "cut", quiet)
+    assert not set(again) & set(done)
+    assert resumed.rows == whole.rows
+    assert resumed.document() == whole.document()
+
+
+def test_more_seeds_use_what_is_there(cheap, tmp_path):
+    compare(PaperOptions(seeds=1, share=0.05, jobs=1), tmp_path, quiet)
+    kept = {p.name: p.stat().st_mtime_ns for p in (tmp_path / "parts").iterdir()}
+    more = compare(PaperOptions(seeds=2, share=0.05, jobs=1), tmp_path, quiet)
+    assert {row.seeds for row in more.rows} == {2}
+    now = {p.name: p.stat().st_mtime_ns for p in (tmp_path / "parts").iterdir()}
+    assert len(now) == 2 * len(kept)
+    assert {name: now[name] for name in kept} == kept
+
+
+def test_pieces_of_another_make_are_refused(cheap, tmp_path):
+    compare(PaperOptions(share=0.05, jobs=1), tmp_path, quiet)
+    with pytest.raises(InputError, match=r"parts/\S+json: share is 0\.05; accepted: 0\.1"):
+        compare(PaperOptions(share=0.1, jobs=1), tmp_path, quiet)
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"made_with": {}}', '{"result": {}}', "\x00"])
+def test_a_damaged_piece_is_named(tmp_path, text):
+    (tmp_path / "a-0.json").write_text(text)
+    with pytest.raises(InputError, match=r"a-0\.json: content"):
+        Parts(tmp_path, {}).load(["a-0"])
+
+
+def test_the_page_holds_every_row_and_escapes_it(cheap, tmp_path):
+    comparison = compare(PaperOptions(share=0.05, jobs=1), tmp_path, quiet)
+    page = write_pages(comparison, tmp_path, quiet).read_text()
+    assert page.count("<tr><td>") == len(comparison.rows)
+    assert "<script" not in page
+    for name in ("fig1", "fig2a", "fig2b", "fig5", "fig6", "fig9"):
+        assert f'id="{name}"' in page
+        assert (tmp_path / "figures" / f"{name}.svg").stat().st_size > 1000
+        assert (tmp_path / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
+    document = json.loads((tmp_path / "paper.json").read_text())
+    assert [row["item"] for row in document["rows"]] == [row.item for row in comparison.rows]
+    assert (tmp_path / "paper.md").read_text().count("\n") == len(comparison.rows) + 2
+    (evil,) = make_rows([item(equal(), 1, lambda n: "<b>&")], {"e": [{"x": 2}]})
+    shown = render_page(Comparison(PaperOptions(), [evil], {}, {}), [])
+    assert "&lt;b&gt;&amp;" in shown
+    assert "<b>&" not in shown
+    assert "<b>&" in markdown([evil])
+
+
+def test_figures_need_no_experiment_that_was_not_made(cheap, tmp_path):
+    comparison = compare(PaperOptions(share=0.05, jobs=1), tmp_path, quiet)
+    kept = {"domain-2r": comparison.pictures["domain-2r"]}
+    found = list(paper_pictures(Comparison(PaperOptions(), [], kept, {})))
+    assert [picture.name for picture in found] == ["fig6"]
+
+
+def test_the_command_prints_rows(cheap, tmp_path, capsys):
+    code = status(["paper", "2r", "--out", str(tmp_path), "--quick", "--jobs", "1", "--json"])
+    captured = capsys.readouterr()
+    assert code == 0, captured.err
+    rows = json.loads(captured.out)["rows"]
+    assert all({"item", "paper", "ours", "holds", "rule", "why"} <= set(row) for row in rows)
+    assert all(row["holds"] or row["why"] for row in rows)
+
+
+@pytest.mark.parametrize(
+    "arguments", [["4r"], ["2r", "--seeds", "0"], ["2r", "--jobs", "0"], ["2r", "--seed", "-1"]]
+)
+def test_the_command_refuses_in_one_line(arguments, tmp_path, capsys):
+    assert status(["paper", *arguments, "--out", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert error.count("\n") == 1
+
+
+def test_parts_of_the_paper():
+    assert {e.part for e in experiments_of("3r")} == {"3r"}
+    assert experiments_of("all") == experiments_of("figures") == EXPERIMENTS

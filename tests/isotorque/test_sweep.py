@@ -1,0 +1,128 @@
+"""Sweeps: tables read or refused, runs done once, results in one table."""
+
+import csv
+import json
+
+import pytest
+
+from isotorque import sweep as sweep_module
+from isotorque.cli.main import status
+from isotorque.sweep import COLUMNS, sweep
+from isotorque.sweep_table import read_sweep
+from symbolic.errors import InputError
+
+LEARNER = "recursive-least-squares"
+
+
+def quiet(*_):
+    pass
+
+
+def table(path, text):
+    path.write_text(text)
+    return path
+
+
+def test_a_toml_table_is_every_combination(tmp_path):
+    text = f'robots = ["2r", "pendulum"]\nlearners = ["{LEARNER}"]\nseeds = [3, 7]\nsamples = 50\n'
+    runs = read_sweep(table(tmp_path / "t.toml", text))
+    assert [(r.robot, r.seed, r.samples) for r in runs] == [
+        ("2r", 3, 50), ("2r", 7, 50), ("pendulum", 3, 50), ("pendulum", 7, 50),
+    ]  # fmt: skip
+    assert {r.symmetries for r in runs} == {"learned"}
+
+
+def test_a_number_of_seeds_counts_from_zero(tmp_path):
+    text = f'robots = ["2r"]\nlearners = ["{LEARNER}"]\nsymmetries = ["none", "exact"]\nseeds = 2\n'
+    runs = read_sweep(table(tmp_path / "t.toml", text))
+    assert [(r.symmetries, r.seed) for r in runs] == [
+        ("none", 0), ("none", 1), ("exact", 0), ("exact", 1),
+    ]  # fmt: skip
+
+
+def test_a_csv_table_is_one_run_per_line_each_once(tmp_path):
+    once = f"2r,{LEARNER},1,40\n"
+    text = f"robot,learner,seed,samples\n{once}\npendulum, network ,2,\n{once}"
+    runs = read_sweep(table(tmp_path / "t.csv", text))
+    assert [(r.robot, r.learner, r.seed, r.samples) for r in runs] == [
+        ("2r", LEARNER, 1, 40), ("pendulum", "network", 2, 1000),
+    ]  # fmt: skip
+    assert len({r.name for r in runs}) == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("t.csv", "", ("row 1", "robot is missing")),
+        ("t.csv", "robot,learner,seed\n", ("rows",)),
+        ("t.csv", "robot,learner,seed,colour\n", ("row 1", "colour")),
+        ("t.csv", "robot,learner,seed,seed\n", ("row 1", "seed")),
+        ("t.csv", f"robot,learner,seed\n2r,{LEARNER}\n", ("row 2", "number of fields")),
+        ("t.csv", f"robot,learner,seed\n2r,{LEARNER},1\n2r,{LEARNER},x\n", ("row 3", "seed", "x")),
+        ("t.csv", f"robot,learner,seed\n2r,{LEARNER},-1\n", ("row 2", "seed")),
+        ("t.csv", f"robot,learner,seed,samples\n2r,{LEARNER},1,0\n", ("row 2", "samples")),
+        ("t.csv", "robot,learner,seed\n2r,nobody,1\n", ("row 2", "nobody", "gaussian-process")),
+        ("t.csv", f"robot,learner,seed\nnowhere.urdf,{LEARNER},1\n", ("row 2", "nowhere.urdf")),
+        ("t.csv", f"robot,learner,seed,symmetries\n2r,{LEARNER},1,all\n", ("row 2", "all")),
+        ("t.toml", "robots = [", ("no TOML",)),
+        ("t.toml", 'robots = ["2r"]\n', ("learners", "missing")),
+        ("t.toml", 'robots = "2r"\nlearners = ["x"]\n', ("robots",)),
+        ("t.toml", f'robots = ["2r"]\nlearners = ["{LEARNER}"]\nseeds = 1.5\n', ("seeds", "1.5")),
+        ("t.toml", f'robots = ["2r"]\nlearners = ["{LEARNER}"]\nseed = 1\n', ("key", "seed")),
+        ("t.toml", 'robots = ["2r"]\nlearners = ["nobody"]\n', ("entry 1", "nobody")),
+        ("t.txt", "x", ("ending", ".csv or .toml")),
+    ],
+)
+def test_a_bad_table_is_refused_in_one_line(tmp_path, capsys, name, text, said):
+    path = table(tmp_path / name, text)
+    assert status(["sweep", str(path), "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert error.startswith(f"error: {path}")
+    for word in said:
+        assert word in error
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_missing_table_is_refused(tmp_path):
+    with pytest.raises(InputError, match="file"):
+        read_sweep(tmp_path / "none.csv")
+
+
+def test_runs_become_one_table_and_a_plot_and_are_done_once(tmp_path, capsys, monkeypatch):
+    path = table(
+        tmp_path / "t.toml",
+        f'robots = ["pendulum"]\nlearners = ["{LEARNER}"]\nseeds = 2\nsamples = 20\n',
+    )
+    out = tmp_path / "out"
+    arguments = ["sweep", str(path), "--out", str(out), "--jobs", "1", "--json"]
+    assert status(arguments) == 0
+    first = json.loads(capsys.readouterr().out)
+    with (out / "sweep.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert tuple(rows[0]) == COLUMNS
+    assert [row["rmse"] for row in rows] == [str(row["rmse"]) for row in first["rows"]]
+    assert {row["seed"] for row in rows} == {"0", "1"}
+    assert float(rows[-1]["rmse"]) < float(rows[0]["rmse"])
+    assert b"<svg" in (out / "sweep.svg").read_bytes()
+    monkeypatch.setattr(sweep_module, "perform_run", lambda run: pytest.fail("done before"))
+    assert status(arguments) == 0
+    assert json.loads(capsys.readouterr().out) == first
+
+
+def test_a_longer_table_adds_its_runs(tmp_path, monkeypatch):
+    runs = read_sweep(
+        table(tmp_path / "t.csv", f"robot,learner,seed\n2r,{LEARNER},0\n2r,{LEARNER},1\n")
+    )
+    asked = []
+
+    def fake(run):
+        asked.append(run.seed)
+        point = {"samples": 1, "rmse": 1.0 + run.seed, "explored": None}
+        return {"curve": [point], "motions": 5, "inadmissible": 0.0}
+
+    monkeypatch.setattr(sweep_module, "perform_run", fake)
+    sweep(runs[:1], tmp_path, quiet, jobs=1)
+    found = sweep(runs, tmp_path, quiet, jobs=1)
+    assert asked == [0, 1]
+    assert [row["rmse"] for row in found.rows] == [1.0, 2.0]
