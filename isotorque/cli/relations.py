@@ -156,6 +156,8 @@ def _document(
             "standard_error": plain(entry.standard_error),
             "support": entry.support,
             "p_value": plain(entry.p_value),
+            "log10_false_alarms": plain(entry.log10_false_alarms),
+            "snapped": entry.snapped,
             "regression": _regression(entry.regression),
         }
         for entry in learned.relations

@@ -216,6 +216,9 @@ def test_secondary_pairs_are_counted_not_learned(tmp_path, capsys):
     assert sum(kind["pairs"] for kind in pairs) == 64 * sixteen
     assert all(kind["torques"] <= sixteen for kind in pairs)
     assert {entry["known"] for entry in document["relations"][1:]} == {"observed"}
+    assert all(entry["snapped"] for entry in document["relations"])
+    found_alone = [r["log10_false_alarms"] for r in document["relations"][1:]]
+    assert any(alarms is not None and alarms < -3 for alarms in found_alone)
     regression = document["relations"][1]["regression"]
     np.testing.assert_allclose(regression["M"], document["relations"][1]["M"], atol=1e-6)
 

@@ -25,7 +25,7 @@ def test_each_torque_holds_the_arm_somewhere_on_its_way(seed, spacing):
     stable = way[np.linalg.eigvalsh(potential.hessian(way)).min(axis=1) > 0]
     there = potential.gradient(stable).reshape(1, -1, 2)
     assert (np.abs(found[:, None] - there).max(axis=2).min(axis=1, initial=np.inf) < 1e-6).all()
-    # nothing between two of them that is farther than the spacing from both is left out
+    # without spacing every stable configuration on the way counts
     taken = visited_torques(fit, way, spacing=1e-12)
     assert len(found) <= len(taken) == len(stable)
 
