@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.data_remarks import analytic_remarks, outlier_remarks
-from isotorque.experiment import DATABASE, Progress
+from isotorque.experiment import Progress
 from isotorque.lattice_learning import fitted_with_curve
 from isotorque.learned_model import LearnedModel
 from isotorque.learning_curve import DenseTest
 from isotorque.run_options import check_symmetries
 from isotorque.single_thread import single_thread
+from isotorque.stages import DATABASE
 from learning.held_out import HeldOut, held_out
 from learning.learners.by_name import LearningTask, check_learner, learner_by_name
 from learning.recordings.csv_data import StaticSamples, read_csv

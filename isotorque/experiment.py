@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -13,21 +13,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning_curve import CurvePoint, DenseTest, curve_counts
-from isotorque.run_options import LATTICE, ArmOptions, RunOptions
+from isotorque.run_options import LATTICE, RunOptions
 from isotorque.single_thread import single_thread
+from isotorque.stages import DATABASE, random_generator, run_info, simulated_arm
 from learning.arm import OutcomeKind
 from learning.exploration.by_name import DIRECTIONS
 from learning.exploration.step import ExplorationStep
 from learning.learners.by_name import BATCH_LEARNERS, learner_by_name, online_learner
 from learning.learners.collected_samples import CollectedSamples
 from learning.model_files import SavedModel, save_model
-from learning.physics import MeasurementNoise, PhysicsMode
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
-from learning.recordings.recording_reader import RecordingReader
-from learning.recordings.run_info import RunInfo
 from learning.scheme import Discovery, LearnerFactory, Scheme, SchemeSettings
 from learning.simulation.simulated_arm import SimulatedArm
+from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from symbolic.robots import Robot, load_robot
@@ -36,9 +35,6 @@ from symbolic.symmetries import primary_symmetries
 Array = NDArray[np.float64]
 Progress = Callable[[str, int, int, str], None]
 
-DATABASE = "run.sqlite"
-SENSORS = 100
-"""Generators of sensors are numbered from here on."""
 DISCOVERING, LEARNING = "discovering symmetries", "learning the inverse statics"
 
 
@@ -153,8 +149,17 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
         The same directory.
     progress
         Called as ``progress(stage, done, total, note)``.
+
+    Raises
+    ------
+    InputError
+        If the discovery found no torque that the arm can hold by itself.
     """
     options = result.options
+    if not result.scheme.torque_range.any():
+        what = f"number of torques held by itself, in {len(result.motions)} motions,"
+        accepted = "some; --strategy lattice leads an arm that holds none"
+        raise InputError(result.robot.name, what, 0, accepted)
     arm = simulated_arm(result.robot, options.arm, 1)
     chosen = {k: getattr(options, k) for k in ("samples", "symmetries", "strategy")}
     # a batch learner does not change what the arm does: another one may use the same samples
@@ -194,21 +199,6 @@ def save_learner(learner: Any, robot: Robot, notes: dict[str, Any], out: Path) -
     return save_model(saved, out)
 
 
-def recorded_discovery(out: Path) -> tuple[ArmOptions, int, int] | None:
-    """Return arm, n_min and confirm of the discovery that ``out`` already holds, if any."""
-    path = out / DATABASE
-    if not path.is_file():
-        return None
-    with RecordingReader(path, check=False) as reader:
-        for part in reader.parts:
-            if part.info.part == "discover":
-                recorded = part.info.options
-                names = {f.name for f in fields(ArmOptions)}
-                arm = ArmOptions(**{k: v for k, v in recorded["made_with"].items() if k in names})
-                return arm, int(recorded["n_min"]), int(recorded.get("confirm", 0))
-    return None
-
-
 def _scheme_settings(options: RunOptions) -> SchemeSettings:
     strategy = DIRECTIONS if options.strategy == LATTICE else options.strategy
     return SchemeSettings(
@@ -244,44 +234,6 @@ def _follow(result: RunOutcome, progress: Progress) -> None:
             result.curve.append(CurvePoint(count, rmse, step.explored))
             note = f"RMSE {rmse:.4g} N m"
         progress(LEARNING, count, total, note)
-
-
-def random_generator(options: ArmOptions, stage: int) -> np.random.Generator:
-    """Return the generator of a stage: learning does not depend on how long discovery took."""
-    return np.random.default_rng(np.random.SeedSequence(options.seed, spawn_key=(stage,)))
-
-
-def simulated_arm(robot: Robot, options: ArmOptions, stage: int) -> SimulatedArm:
-    """Return the arm of a stage; its sensors have a generator of their own."""
-    # who holds a guided arm measures torques of the same standard deviation
-    held = np.sqrt(3.0) * options.torque_noise * (options.physics == PhysicsMode.GUIDED)
-    noise = MeasurementNoise(
-        options.angle_noise, options.torque_noise, options.encoder_step, float(held)
-    )
-    return SimulatedArm(
-        robot,
-        physics=options.physics,
-        engine=options.engine,
-        settle=options.settle,
-        noise=noise,
-        rng=random_generator(options, SENSORS + stage) if noise.is_random else None,
-    )
-
-
-def run_info(
-    robot: Robot, arm: SimulatedArm, options: ArmOptions, part: str, more: dict[str, Any]
-) -> RunInfo:
-    """Return what a part of a run is made with, for its recording."""
-    return RunInfo(
-        robot.name,
-        robot.digest,
-        robot.joint_names,
-        options.physics,
-        options.engine,
-        options.seed,
-        {**more, "made_with": asdict(options), "arm": arm.settings.as_json()},
-        part,
-    )
 
 
 def _gate_note(scheme: Scheme) -> str:

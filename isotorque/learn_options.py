@@ -7,7 +7,6 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from isotorque.experiment import recorded_discovery
 from isotorque.run_options import (
     LATTICE,
     ArmOptions,
@@ -15,6 +14,7 @@ from isotorque.run_options import (
     default_learner,
     default_samples,
 )
+from isotorque.stages import recorded_discovery
 from learning.physics import PhysicsMode
 
 

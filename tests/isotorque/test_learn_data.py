@@ -82,7 +82,7 @@ def test_outliers_are_reported_and_kept_unless_told_otherwise(learn, tmp_path, l
 
 
 def test_disagreement_with_the_robot_file_is_told_in_numbers(learn, tmp_path):
-    data = recording(tmp_path / "arm.csv", change=lambda q, tau: np.add(tau, [0.5, 0.0]))
+    data = recording(tmp_path / "arm.csv", 40, change=lambda q, tau: np.add(tau, [0.5, 0.0]))
     found = learn(tmp_path, data, "--learner", "gaussian-process", "--symmetries", "none")
     analytic = found["data"]["analytic"]
     assert analytic["mean_by_joint"] == pytest.approx([0.5, 0.0], abs=0.01)
@@ -114,7 +114,7 @@ def test_numbered_columns_and_a_single_row_do(learn, tmp_path):
 
 
 def test_one_seed_gives_one_model_to_the_last_byte(learn, tmp_path):
-    data = recording(tmp_path / "arm.csv", 12)
+    data = recording(tmp_path / "arm.csv", 8)
     models = []
     for folder in ("a", "b"):
         learn(tmp_path / folder, data, "--symmetries", "exact")

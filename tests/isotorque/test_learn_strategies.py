@@ -108,6 +108,21 @@ def test_bad_or_contradicting_options_are_one_line(learn, options, words):
         assert word in message
 
 
+@pytest.mark.slow
+def test_an_arm_that_holds_nothing_by_itself_is_led_to_a_lattice(tmp_path, capsys):
+    arguments = ["learn", "panda", "--out", str(tmp_path), "--samples", "255"]
+    arguments += ["--json", "--quiet"]
+    assert status(arguments) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert "lattice" in message
+    lattice = ["--strategy", "lattice", "--learner", "trigonometric"]
+    assert status([*arguments, *lattice]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["relations"] == 2  # from the samples of the lattice
+    assert found["rmse_torque"] < 1e-9
+
+
 def test_one_run_has_one_way_of_learning(learn):
     learn("--learner", "trigonometric", "--samples", 20)
     assert "strategy" in learn(
@@ -115,6 +130,7 @@ def test_one_run_has_one_way_of_learning(learn):
     )
 
 
+@pytest.mark.slow
 def test_the_whole_scheme_runs_with_a_batch_learner(tmp_path, capsys):
     arguments = ["run", "2r", "--out", str(tmp_path), "--learner", "trigonometric"]
     assert status([*arguments, "--samples", "60", "--quiet", "--json"]) == 0

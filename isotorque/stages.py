@@ -1,0 +1,73 @@
+"""The stages of a run: their arms, random generators and parts of the recording."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from isotorque.run_options import ArmOptions
+from learning.physics import MeasurementNoise, PhysicsMode
+from learning.recordings.recording_reader import RecordingReader
+from learning.recordings.run_info import RunInfo
+from learning.simulation.simulated_arm import SimulatedArm
+from symbolic.robots import Robot
+
+DATABASE = "run.sqlite"
+SENSORS = 100
+"""Generators of sensors are numbered from here on."""
+
+
+def random_generator(options: ArmOptions, stage: int) -> np.random.Generator:
+    """Return the generator of a stage: learning does not depend on how long discovery took."""
+    return np.random.default_rng(np.random.SeedSequence(options.seed, spawn_key=(stage,)))
+
+
+def simulated_arm(robot: Robot, options: ArmOptions, stage: int) -> SimulatedArm:
+    """Return the arm of a stage; its sensors have a generator of their own."""
+    # who holds a guided arm measures torques of the same standard deviation
+    held = np.sqrt(3.0) * options.torque_noise * (options.physics == PhysicsMode.GUIDED)
+    noise = MeasurementNoise(
+        options.angle_noise, options.torque_noise, options.encoder_step, float(held)
+    )
+    return SimulatedArm(
+        robot,
+        physics=options.physics,
+        engine=options.engine,
+        settle=options.settle,
+        noise=noise,
+        rng=random_generator(options, SENSORS + stage) if noise.is_random else None,
+    )
+
+
+def run_info(
+    robot: Robot, arm: SimulatedArm, options: ArmOptions, part: str, more: dict[str, Any]
+) -> RunInfo:
+    """Return what a part of a run is made with, for its recording."""
+    return RunInfo(
+        robot.name,
+        robot.digest,
+        robot.joint_names,
+        options.physics,
+        options.engine,
+        options.seed,
+        {**more, "made_with": asdict(options), "arm": arm.settings.as_json()},
+        part,
+    )
+
+
+def recorded_discovery(out: Path) -> tuple[ArmOptions, int, int] | None:
+    """Return arm, n_min and confirm of the discovery that ``out`` already holds, if any."""
+    path = out / DATABASE
+    if not path.is_file():
+        return None
+    with RecordingReader(path, check=False) as reader:
+        for part in reader.parts:
+            if part.info.part == "discover":
+                recorded = part.info.options
+                names = {f.name for f in fields(ArmOptions)}
+                arm = ArmOptions(**{k: v for k, v in recorded["made_with"].items() if k in names})
+                return arm, int(recorded["n_min"]), int(recorded.get("confirm", 0))
+    return None
