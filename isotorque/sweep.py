@@ -20,6 +20,7 @@ from isotorque.paper.parts import Parts
 from isotorque.parallel import in_processes, on_cluster
 from isotorque.run_options import ArmOptions, RunOptions
 from isotorque.sweep_table import SweepRun
+from learning.recordings.run_info import software_versions
 from verify.figures.learning_curves import LearningCurve, curve_panels
 from verify.figures.style import save_figure
 
@@ -62,6 +63,7 @@ def perform_run(run: SweepRun) -> dict[str, Any]:
         "curve": [asdict(point) for point in result.curve],
         "motions": len(result.motions),
         "inadmissible": lost / max(1, len(result.steps)),
+        "versions": software_versions(),
     }
 
 

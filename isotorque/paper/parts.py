@@ -35,7 +35,16 @@ class Parts:
         self.made_with = {"format": FORMAT, **options, "versions": software_versions()}
 
     def save(self, name: str, result: dict[str, Any]) -> None:
-        """Write the result of a piece, whole or not at all."""
+        """Write the result of a piece, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            If a worker elsewhere made it with other versions (``versions`` in the result).
+        """
+        here = self.made_with["versions"]
+        if result.get("versions", here) != here:
+            raise InputError(name, "versions of the worker", result["versions"], f"{here}")
         text = json.dumps({"made_with": self.made_with, "result": result}, allow_nan=False)
         write_whole(self._path(name), text + "\n")
 

@@ -16,8 +16,11 @@ from isotorque.paper.table import Row, make_rows
 from isotorque.paper.work import Piece, perform
 from isotorque.parallel import in_processes, on_cluster
 from learning.recordings.run_info import software_versions
+from symbolic.robots import load_robot
 
 Progress = Callable[[str, int, int, str], None]
+ROBOTS = ("2r", "3r")
+"""Built-in robots that the experiments are made with."""
 QUICK = 0.01
 """Share of the paper's samples with ``--quick``."""
 
@@ -105,7 +108,8 @@ def compare(options: PaperOptions, out: Path, progress: Progress) -> Comparison:
     """
     experiments = experiments_of(options.part)
     pieces = _pieces(experiments, options)
-    parts = Parts(output_directory(out) / "parts", {"share": options.share})
+    robots = {name: load_robot(name).digest for name in ROBOTS}
+    parts = Parts(output_directory(out) / "parts", {"share": options.share, "robots": robots})
     done = parts.load(piece.name for piece in pieces)
     stage, kept = "experiments", len(done)
     progress(stage, kept, len(pieces), f"{kept} were done before" if kept else "")

@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 from isotorque.cli.output import plain
 from isotorque.paper.experiments import experiment
 from isotorque.paper.measured import Effort
+from learning.recordings.run_info import software_versions
 from symbolic.robots import load_robot
 
 
@@ -37,11 +38,15 @@ class Piece:
 
 
 def perform(piece: Piece) -> dict[str, Any]:
-    """Measure, and return plain numbers and lists: ``numbers`` and ``pictures``.
+    """Measure, and return plain ``numbers`` and ``pictures``, and the ``versions`` that made them.
 
     The same piece gives the same result wherever it is done (times apart).
     """
     chosen = experiment(piece.experiment)
     with threadpool_limits(1):  # arrays are small: threads would only wait for each other
         measured = chosen.measure(load_robot(chosen.robot), piece.seed, Effort(piece.share))
-    return {"numbers": plain(measured.numbers), "pictures": plain(measured.pictures)}
+    return {
+        "numbers": plain(measured.numbers),
+        "pictures": plain(measured.pictures),
+        "versions": software_versions(),
+    }

@@ -241,6 +241,13 @@ def test_pieces_of_another_make_are_refused(cheap, tmp_path):
         compare(PaperOptions(share=0.1, jobs=1), tmp_path, quiet)
 
 
+def test_a_worker_of_another_version_is_refused(tmp_path):
+    parts = Parts(tmp_path, {})
+    with pytest.raises(InputError, match="versions of the worker"):
+        parts.save("a-0", {"versions": {"numpy": "0.1"}})
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"made_with": {}}', '{"result": {}}', "\x00"])
 def test_a_damaged_piece_is_named(tmp_path, text):
     (tmp_path / "a-0.json").write_text(text)
