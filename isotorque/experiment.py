@@ -17,7 +17,8 @@ from isotorque.run_options import LATTICE, RunOptions
 from isotorque.single_thread import single_thread
 from isotorque.stages import DATABASE, random_generator, run_info, simulated_arm
 from learning.arm import OutcomeKind
-from learning.exploration.by_name import DIRECTIONS
+from learning.exploration.by_name import DIRECTIONS, LED
+from learning.exploration.led_arm import LedArm
 from learning.exploration.step import ExplorationStep
 from learning.learners.by_name import BATCH_LEARNERS, learner_by_name, online_learner
 from learning.learners.collected_samples import CollectedSamples
@@ -170,7 +171,8 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
         _timed(result.seconds, "learning"),
     ):
         recorded = RecordedSimulation(arm, recording, phase="learning")
-        result.scheme.arm = recorded
+        moved: Any = LedArm(recorded, result.robot.limits) if options.is_led else recorded
+        result.scheme.arm = moved
         result.scheme.rng = random_generator(options.arm, 1)
         _follow(result, progress)
         recorded.finish()
@@ -201,6 +203,7 @@ def save_learner(learner: Any, robot: Robot, notes: dict[str, Any], out: Path) -
 
 def _scheme_settings(options: RunOptions) -> SchemeSettings:
     strategy = DIRECTIONS if options.strategy == LATTICE else options.strategy
+    strategy = LED if options.is_led else strategy
     return SchemeSettings(
         n_min=options.n_min, samples=options.samples, strategy=strategy, confirm=options.confirm
     )

@@ -122,6 +122,11 @@ class RunOptions:
         """The learner that estimates the torques of an exploration."""
         return LEADER if self.learner in BATCH_LEARNERS else self.learner
 
+    @property
+    def is_led(self) -> bool:
+        """Whether the arm is led along the directions of an exploration, not driven."""
+        return self.strategy == DIRECTIONS and self.arm.physics == PhysicsMode.GUIDED
+
     def task(self, joints: int) -> LearningTask:
         """Return what batch learners are told beforehand."""
         return LearningTask(

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.arm import Arm
 from learning.exploration.loop import Exploration, Learner
 from learning.exploration.strategies import (
     ConstrainedDirectionSampling,
     ConstrainedGoalBabbling,
+    GuidedDirectionSampling,
     MotorBabbling,
 )
 from learning.sampling.lattice import lattice_samples
@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 
 DIRECTIONS, GOALS, MOTORS = "direction-sampling", "goal-babbling", "motor-babbling"
 EXPLORATIONS = (DIRECTIONS, GOALS, MOTORS)
+LED = "guided-direction-sampling"
+"""Direction sampling where the arm is led and held, see `GuidedDirectionSampling`."""
 GOAL_COUNT = 64
 """Goals of goal babbling, the number of the paper's targets for its 3R arm."""
 
@@ -35,14 +37,15 @@ def check_exploration(name: str) -> str:
     InputError
         If there is none of that name.
     """
-    if name not in EXPLORATIONS:
-        raise InputError("exploration", "strategy", name, ", ".join(EXPLORATIONS))
+    known = (*EXPLORATIONS, LED)
+    if name not in known:
+        raise InputError("exploration", "strategy", name, ", ".join(known))
     return name
 
 
 def exploration_by_name(
     name: str,
-    arm: Arm,
+    arm: Any,
     learner: Learner,
     rng: np.random.Generator,
     *,
@@ -58,6 +61,7 @@ def exploration_by_name(
         ``direction-sampling``: random directions through the domain (Algorithm 2).
         ``goal-babbling``: straight paths between goals spread over the domain.
         ``motor-babbling``: random torques, moved to the nearest static torque.
+        ``guided-direction-sampling``: as the first, with an arm that is led and held.
     arm, learner, rng
         As in ``Exploration``.
     domain
@@ -76,6 +80,9 @@ def exploration_by_name(
     check_exploration(name)
     if name == DIRECTIONS:
         return ConstrainedDirectionSampling(arm, learner, rng, domain=domain, **options)
+    if name == LED:
+        led = {k: v for k, v in options.items() if k != "static_torques"}
+        return GuidedDirectionSampling(arm, learner, rng, domain=domain, **led)
     if name == MOTORS:
         return MotorBabbling(arm, learner, rng, **options)
     goals = _goals(domain, seen, rng)

@@ -54,6 +54,18 @@ def test_every_strategy_learns(learn, strategy, tmp_path):
     assert learn(*options) == found  # again, from the recording
 
 
+def test_a_guided_arm_is_led_along_the_directions(learn, tmp_path):
+    options = ("--physics", "guided", "--learner", "recursive-least-squares", "--samples", 100)
+    found = learn(*options)
+    assert found["rmse_torque"] < 0.0053
+    with RecordingReader(tmp_path / "run" / "run.sqlite") as reader:
+        kinds = {c.kind: c.commands for c in reader.counts() if c.part == "learn"}
+        samples = reader.samples(part="learn")
+    assert kinds["hold"] == 100
+    assert "apply" not in kinds
+    assert len(samples.q) == 100
+
+
 def test_goals_are_reached_without_symmetries_too(learn):
     options = ("--strategy", "goal-babbling", "--symmetries", "none", "--samples", 80)
     found = learn(*options, "--learner", "trigonometric")

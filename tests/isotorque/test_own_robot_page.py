@@ -32,7 +32,7 @@ def arm(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_the_commands_run(arm, capsys):
-    assert len(COMMANDS) == 9
+    assert len(COMMANDS) == 10
     for command in COMMANDS:
         arguments = shlex.split(command)
         if arguments[0] == "learn" and "--data" not in arguments:
