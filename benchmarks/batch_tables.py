@@ -9,7 +9,11 @@ from typing import Any
 import numpy as np
 
 CONTAINS_TRUTH = ("trigonometric", "parametric")
-ERRORS = {"2r": (0.1, 0.01, 0.001), "3r": (0.3, 0.03, 0.003), "ur5": (0.5, 0.05), "panda": (0.5,)}
+ERRORS = {
+    "2r": (0.1, 0.01, 0.001), "3r": (0.3, 0.03, 0.003), "ur5": (0.5, 0.05), "panda": (0.5,)
+}  # fmt: skip
+SHARE = 0.01
+"""Share of the largest torque that the worst joint's RMSE may have."""
 
 
 @dataclass(frozen=True)
@@ -22,8 +26,10 @@ class Row:
     samples: int
     noise_degrees: float
     errors: list[float]
+    on_paper_targets: dict[str, float]
     share_of_max: float
     seconds: float
+    order: float
     demanded: float | None
     paper: float | None
 
@@ -47,9 +53,13 @@ def samples_needed(curve: dict[int, float], error: float) -> float | None:
 def equal_errors(rows: list[Row]) -> list[dict[str, Any]]:
     """Samples needed with and without symmetries for the same error, and their ratio by seed."""
     result = []
-    keys = dict.fromkeys((row.robot, row.learner) for row in rows)
-    for robot, learner in keys:
-        chosen = [row for row in rows if (row.robot, row.learner) == (robot, learner)]
+    keys = dict.fromkeys((row.noise_degrees, row.robot, row.learner) for row in rows)
+    for noise, robot, learner in keys:
+        chosen = [
+            row
+            for row in rows
+            if (row.noise_degrees, row.robot, row.learner) == (noise, robot, learner)
+        ]
         for error in ERRORS[robot]:
             needed: dict[str, list[float | None]] = {}
             first: dict[str, int] = {}
@@ -71,7 +81,9 @@ def equal_errors(rows: list[Row]) -> list[dict[str, Any]]:
                 {
                     "robot": robot,
                     "learner": learner,
+                    "noise_degrees": noise,
                     "error": error,
+                    "order": next(row.order for row in chosen if row.symmetries == "exact"),
                     "exact": statistics.median(n for n in needed["exact"] if n is not None),
                     "none": statistics.median(reached) if reached else None,
                     "ratio": ratios if len(ratios) == len(pairs) else None,
@@ -82,27 +94,81 @@ def equal_errors(rows: list[Row]) -> list[dict[str, Any]]:
     return result
 
 
+def resolved(item: dict[str, Any]) -> bool:
+    """Whether an entry of `equal_errors` has a ratio that the curves resolve."""
+    return bool(item["ratio"]) and not item["exact_at_most"] and not item["none_at_most"]
+
+
+def sentence(rows: list[Row]) -> str:
+    """What the factor really is, from the measured entries."""
+    items = [item for item in equal_errors(rows) if item["learner"] not in CONTAINS_TRUTH]
+    clean = [item for item in items if not item["noise_degrees"] and resolved(item)]
+    parts = []
+    for robot in dict.fromkeys(item["robot"] for item in clean):
+        of_robot = [item for item in clean if item["robot"] == robot]
+        ratios = [statistics.median(item["ratio"]) for item in of_robot]
+        beyond = sum(
+            not item["noise_degrees"] and item["robot"] == robot and item["ratio"] is None
+            for item in items
+        )
+        more = f" (and {beyond} times no number tried sufficed without)" if beyond else ""
+        parts.append(
+            f"{min(ratios):.1f} to {max(ratios):.1f} times on {robot}, whose group has order "
+            f"{of_robot[0]['order']:g}{more}"
+        )
+    if not parts:
+        return "No entry resolves the factor."
+    return (
+        "What the factor really is: without symmetries the same error takes "
+        + "; ".join(parts)
+        + ". It depends on the learner and on the error asked for; the order of the group is "
+        "neither its value nor a bound."
+    )
+
+
 def tables(rows: list[Row]) -> str:
-    """Both tables as Markdown."""
-    lines = ["Equal samples: RMSE [N m] on the dense set, median (range over seeds).", ""]
-    head = ["robot", "symmetries", "samples", "learner", "RMSE", "worst joint, % of max torque"]
-    lines += ["| " + " | ".join([*head, "fit [s]", "demanded", "paper"]) + " |"]
-    lines += ["|---" * 9 + "|"]
+    """All tables as Markdown, and the sentence that says what the factor is."""
+    parts = [sentence(rows)]
+    for noise in dict.fromkeys(row.noise_degrees for row in rows):
+        chosen = [row for row in rows if row.noise_degrees == noise]
+        said = f"angles off by {noise:g} degrees" if noise else "no noise"
+        parts += [f"### Equal errors, {said}", _equal_error_table(chosen)]
+        parts += [f"### Equal samples, {said}", _equal_sample_table(chosen)]
+        if not noise:
+            parts += [
+                "### Samples for 1 % of the largest torque",
+                "RMSE of the worst joint (median over the seeds), smallest number tried.",
+                _share_table(chosen),
+            ]
+    return "\n\n".join(parts)
+
+
+def _line(cells: list[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
+
+
+def _equal_sample_table(rows: list[Row]) -> str:
+    head = ["robot", "symmetries", "samples", "learner", "RMSE, dense [N m]"]
+    head += ["on the paper's targets", "worst joint, % of max torque", "fit [s]"]
+    head += ["demanded", "paper"]
+    lines = [_line(head), "|---" * len(head) + "|"]
     for parametric in (False, True):
         for row in rows:
             if (row.learner in CONTAINS_TRUTH) is not parametric:
                 continue
             spread = f"{row.median:.2g} ({min(row.errors):.2g} .. {max(row.errors):.2g})"
-            cells = [row.robot, row.symmetries, str(row.samples), row.learner, spread]
-            cells += [f"{100 * row.share_of_max:.2g}", f"{row.seconds:.2g}"]
+            paper = ", ".join(f"{k}: {v:.2g}" for k, v in row.on_paper_targets.items())
+            found = f" ({row.order:g})" if row.symmetries in ("exact", "learned") else ""
+            cells = [row.robot, row.symmetries + found, str(row.samples), row.learner, spread]
+            cells += [paper, f"{100 * row.share_of_max:.2g}", f"{row.seconds:.2g}"]
             cells += ["" if x is None else f"{x:g}" for x in (row.demanded, row.paper)]
-            lines.append("| " + " | ".join(cells) + " |")
-    lines += [
-        "",
-        "Equal errors: samples needed, interpolated on the curves above, and their ratio,",
-    ]
-    lines += ["median (range over seeds).", ""]
-    lines += ["| robot | learner | RMSE [N m] | exact | none | ratio |", "|---" * 6 + "|"]
+            lines.append(_line(cells))
+    return "\n".join(lines)
+
+
+def _equal_error_table(rows: list[Row]) -> str:
+    head = ["robot", "learner", "RMSE [N m]", "exact", "none", "ratio"]
+    lines = [_line(head), "|---" * len(head) + "|"]
     for item in equal_errors(rows):
         exact = ("<= " if item["exact_at_most"] else "") + f"{item['exact']:.0f}"
         if item["ratio"] is None:
@@ -111,8 +177,25 @@ def tables(rows: list[Row]) -> str:
             none = ("<= " if item["none_at_most"] else "") + f"{item['none']:.0f}"
             spread = item["ratio"]
             ratio = f"{statistics.median(spread):.1f} ({min(spread):.1f} .. {max(spread):.1f})"
-            if item["exact_at_most"] or item["none_at_most"]:
+            if not resolved(item):
                 ratio = "not resolved"
         cells = [item["robot"], item["learner"], f"{item['error']:g}", exact, none, ratio]
-        lines.append("| " + " | ".join(cells) + " |")
+        lines.append(_line(cells))
+    return "\n".join(lines)
+
+
+def _share_table(rows: list[Row]) -> str:
+    kinds = ("exact", "learned", "free", "none")
+    lines = [_line(["robot", "learner", *kinds]), "|---" * (2 + len(kinds)) + "|"]
+    for robot, learner in dict.fromkeys((row.robot, row.learner) for row in rows):
+        cells = []
+        for kind in kinds:
+            of_kind = {
+                row.samples: row.share_of_max
+                for row in rows
+                if (row.robot, row.learner, row.symmetries) == (robot, learner, kind)
+            }
+            good = [n for n in of_kind if all(s <= SHARE for m, s in of_kind.items() if m >= n)]
+            cells.append(str(min(good)) if good else ("more" if of_kind else ""))
+        lines.append(_line([robot, learner, *cells]))
     return "\n".join(lines)
