@@ -48,7 +48,9 @@ class GroupTrial:
         self._more = breaking_functions(q)
         everything = self._of_y.beside(self._more)
         self._all = everything if len(q) >= AMPLE * rank_of(everything) else None
-        widest = [self._wide(range(group.order), joint) for joint in range(group.n)]
+        self._known: dict[tuple[int, ...], list[Comparison | None]] = {}
+        everyone = range(group.order)
+        widest = [self._wide(self._tied(everyone, joint)) for joint in range(group.n)]
         self._scales: list[Scales] = scales(widest, tau, noise)
 
     def p_value(self, members: Sequence[int]) -> float:
@@ -71,13 +73,20 @@ class GroupTrial:
 
     def comparisons(self, members: Sequence[int]) -> list[Comparison | None]:
         """A subgroup tested on each joint; None where there are too few samples."""
-        result: list[Comparison | None] = []
-        for joint, scale in enumerate(self._scales):
-            small, large = self._tied(members, joint), self._wide(members, joint)
-            enough = len(self._tau) >= rank_of(large) + SPARE or scale.known
-            torque = self._tau[:, joint]
-            result.append(compare(small, large, torque, scale) if enough else None)
-        return result
+        key = tuple(members)
+        if key not in self._known:
+            torques = zip(self._tau.T, self._scales, strict=True)
+            self._known[key] = [
+                self._comparison(self._tied(members, joint), torque, scale)
+                for joint, (torque, scale) in enumerate(torques)
+            ]
+        return self._known[key]
+
+    def _comparison(self, small: Functions, torque: Array, scale: Scales) -> Comparison | None:
+        large = self._wide(small)
+        if not scale.known and len(torque) < rank_of(large) + SPARE:
+            return None
+        return compare(small, large, torque, scale)
 
     def _tied(self, members: Sequence[int], joint: int) -> Functions:
         """Functions with the relations of a subgroup, for the torque of one joint."""
@@ -107,11 +116,9 @@ class GroupTrial:
         columns[joints] = left[:, singular > 0.5]
         return columns
 
-    def _wide(self, members: Sequence[int], joint: int) -> Functions:
+    def _wide(self, small: Functions) -> Functions:
         """More functions: all that there are samples for."""
-        if self._all is not None:
-            return self._all
-        return self._tied(members, joint).beside(self._more)
+        return self._all if self._all is not None else small.beside(self._more)
 
 
 def over_joints(p_values: Sequence[float]) -> float:
