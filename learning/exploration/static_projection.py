@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Vector = NDArray[np.float64]
 
 #: Steps and safety of the search for the boundary of the set of static torques.
-BISECTIONS = 3
+BISECTIONS = 6
 SAFE_SHARE = 0.7
 
 

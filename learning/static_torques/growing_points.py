@@ -42,6 +42,7 @@ class GrowingPoints:
         self._store = np.empty((32, dimension))
         self._present = np.zeros(32, dtype=bool)
         self._end = 0
+        self._count = 0
         self._tree: KDTree | None = None
         self._tree_indices = np.empty(0, dtype=np.intp)
         self._tree_end = 0
@@ -49,7 +50,7 @@ class GrowingPoints:
 
     def __len__(self) -> int:
         """How many points there are."""
-        return int(self._present[: self._end].sum())
+        return self._count
 
     def __getitem__(self, index: int) -> Array:
         """Point at an index given by `append`."""
@@ -73,11 +74,13 @@ class GrowingPoints:
         self._store[self._end] = point
         self._present[self._end] = True
         self._end += 1
+        self._count += 1
         return self._end - 1
 
     def remove(self, index: int) -> None:
         """Remove a point by the index that `append` gave."""
         self._removed_from_tree += bool(self._present[index] and index < self._tree_end)
+        self._count -= bool(self._present[index])
         self._present[index] = False
 
     def scale(self, factors: Array) -> None:

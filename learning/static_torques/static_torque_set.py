@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import KDTree
@@ -15,6 +17,12 @@ Cell = tuple[int, ...]
 NEVER_VARIED = 1e-9  # of the largest range: the joint was always given the same torque
 CELLS_PER_RANGE = {1: 512, 2: 128, 3: 40}
 CELLS_PER_RANGE_BEYOND = 16
+FINEST = 1.0 / 32.0  # of a cell: torques are not told apart more finely
+GRADE = 0.25  # near the border torques are stored this share of the distance to it apart
+BORDER = 0.1  # of the spacing: how far beyond the mesh a torque may be tried ...
+CAUTION = 0.15  # ... and at most this share of the distance to one that failed, beyond ...
+BUDGET = 0.008  # nothing is tried beyond the mesh while more of the admitted torques failed
+MARGIN = 1.0 / 16.0  # ... so much of a cell
 
 
 class StaticTorqueSet:
@@ -36,15 +44,18 @@ class StaticTorqueSet:
     A torque is admitted if it lies in the region covered by the torques the arm has held *and* is
     nearer to one of them than to any torque marked inadmissible. The region is the Delaunay mesh
     of the held torques without its long simplices (`AlphaShape`) for up to three joints whose
-    torque varies, otherwise a union of balls around them. Torques are compared in units of their
-    range per joint, rounded up to a power of two; a joint that always had the same torque (a free
-    joint) must have it again. The last observation of a torque wins over an earlier one of the
-    very same torque.
+    torque varies, otherwise a union of balls around them. Beyond the mesh a torque may be tried
+    with caution: a tenth of the spacing away from a held one, far nearer to it than to any that
+    failed, and while less than 0.8 % of the torques admitted failed. Torques are compared in
+    units of their range per joint, rounded up to a power of two; a joint that always had the same
+    torque (a free joint) must have it again. The last observation of a torque wins.
 
-    An update costs some microseconds: torques in occupied cells are not stored again, trees and
-    mesh are rebuilt only when the stored torques have grown by a fraction (an eighth, a quarter),
-    so the cost of rebuilding is constant per update on average. Torques newer than the mesh count
-    by their distance.
+    One torque is stored per cell, but more where they tell more: outside the mesh, and between
+    held and failed torques, the closer together the closer these are: angles go with the square
+    root of the torque at the border, 1/128 of the range is 0.2 rad there on the 2R arm.
+
+    Trees and mesh are rebuilt only when the stored torques have grown by a fraction (an eighth, a
+    quarter), so the cost of rebuilding is constant per update on average.
 
     The set knows nothing of why a torque failed: one that cannot be reached on this branch of
     configurations is marked like one that no configuration holds.
@@ -83,13 +94,14 @@ class StaticTorqueSet:
         self._high = np.full(n, -np.inf)
         self._held = GrowingPoints(n)
         self._refused = GrowingPoints(n)
-        self._held_cells: dict[Cell, int] = {}
-        self._refused_cells: dict[Cell, int] = {}
+        self._held_cells: Counter[Cell] = Counter()
+        self._refused_cells: Counter[Cell] = Counter()
+        self._seen = self._failed = 0  # torques that were admitted beforehand, and failed
         self._forget_region()
 
     def __len__(self) -> int:
         """How many held torques are stored."""
-        return len(self._held_cells)
+        return len(self._held)
 
     @property
     def torques(self) -> Array:
@@ -122,12 +134,14 @@ class StaticTorqueSet:
             self._rescale()
             if (active != self.active).any():
                 self._forget_region()
-        self._put(rows / self._scale, self._held, self._held_cells, self._refused_cells)
+        self._seen += len(rows)
+        self._put(rows / self._scale, self._held, self._refused)
 
     def mark_inadmissible(self, torque: ArrayLike) -> None:
         """Take in torques that were not held, shape (n,) or (m, n) [N m]."""
-        rows = self._rows(torque) / self._scale
-        self._put(rows, self._refused, self._refused_cells, self._held_cells)
+        rows = self._rows(torque)
+        self._failed += int(np.sum(self.contains(rows)))
+        self._put(rows / self._scale, self._refused, self._held)
 
     def contains(self, torque: ArrayLike) -> bool | NDArray[np.bool_]:
         """Whether torques are admissible as far as known.
@@ -143,14 +157,19 @@ class StaticTorqueSet:
         """
         rows = self._rows(torque)
         scaled = rows / self._scale
-        to_held, nearest = self._held.nearest(scaled)
+        to_held, _ = self._held.nearest(scaled)
         to_refused, _ = self._refused.nearest(scaled)
         self._refresh_region()
-        covered = to_held <= self._radius * (nearest >= self._region_end)
         active = self.active
-        if self._shape is not None and not covered.all():
-            covered = covered | self._shape.contains(scaled[:, active])
-        admitted = covered & (to_held < to_refused)
+        nearer = to_held < to_refused
+        if self._shape is None:
+            admitted = nearer & (to_held <= self._radius)
+        else:
+            room = CAUTION * (to_refused - MARGIN / self._cells_per_range)
+            trusted = self._failed <= 1 + BUDGET * self._seen
+            admitted = nearer & (to_held <= np.clip(room, 0.0, trusted * BORDER * self._radius))
+            if not admitted.all():
+                admitted |= nearer & self._shape.contains(scaled[:, active])
         if not active.all() and len(self):
             allowed = 1e-6 * max(1.0, float(np.abs(self._high - self._low).max()))
             admitted &= (np.abs(rows - self._low)[:, ~active] <= allowed).all(axis=1)
@@ -210,23 +229,29 @@ class StaticTorqueSet:
             raise InputError("static torque set", "torque", rows, "finite numbers [N m]")
         return np.atleast_2d(rows)
 
-    def _put(
-        self,
-        rows: Array,
-        into: GrowingPoints,
-        cells: dict[Cell, int],
-        other_cells: dict[Cell, int],
-    ) -> None:
-        """Store scaled torques, one per cell; withdraw the opposite claim on the same torque."""
-        other = self._refused if into is self._held else self._held
+    def _put(self, rows: Array, into: GrowingPoints, other: GrowingPoints) -> None:
+        """Store scaled torques that tell something; withdraw the opposite claim on the same one."""
+        cells, other_cells = self._held_cells, self._refused_cells
+        if into is self._refused:
+            cells, other_cells = other_cells, cells
         for row, cell in zip(rows, self._cells(rows), strict=True):
-            rival = other_cells.get(cell)
-            if rival is not None and (other[rival] == row).all():
-                other.remove(other_cells.pop(cell))
+            to_other, rival = (found[0] for found in other.nearest(row[None]))
+            if to_other == 0.0:
+                other_cells[self._cells(other[rival][None])[0]] -= 1
+                other.remove(int(rival))
                 self._changes += 1
-            if cell not in cells:
-                cells[cell] = into.append(row)
+            if not cells[cell] or self._tells_more(row, into, to_other):
+                cells[cell] += 1
+                into.append(row)
                 self._changes += 1
+
+    def _tells_more(self, row: Array, into: GrowingPoints, to_other: float) -> bool:
+        """Whether a torque in an occupied cell narrows the border down."""
+        spacing = GRADE * min(to_other, 1.0)  # in units of the range
+        if self._shape is not None and into is self._held:
+            spacing *= bool(self._shape.contains(row[None, self.active])[0])  # beyond: any
+        to_own = into.nearest(row[None])[0][0]
+        return bool(to_own > max(spacing, FINEST / self._cells_per_range))
 
     def _cells(self, rows: Array) -> list[Cell]:
         corners = np.floor(rows * self._cells_per_range).astype(np.int64)
@@ -243,16 +268,17 @@ class StaticTorqueSet:
         held, refused = self.torques / scale, self.inadmissible / scale
         self._scale = scale
         self._held, self._refused = GrowingPoints(self.n), GrowingPoints(self.n)
-        self._held_cells, self._refused_cells = {}, {}
-        self._put(held, self._held, self._held_cells, self._refused_cells)
-        self._put(refused, self._refused, self._refused_cells, self._held_cells)
+        for rows, into in ((held, self._held), (refused, self._refused)):
+            for row in rows:
+                into.append(row)
+        self._held_cells = Counter(self._cells(held))
+        self._refused_cells = Counter(self._cells(refused))
         self._forget_region()
 
     def _forget_region(self) -> None:
         self._shape: AlphaShape | None = None
-        self._radius = 0.0  # of the balls around the torques from index _region_end on
-        self._region_end = 0
-        self._changes = len(self._held_cells) + 9
+        self._radius = 0.0  # spacing of the torques
+        self._changes = len(self) + 9
 
     def _refresh_region(self) -> None:
         """Rebuild mesh and radius when the stored torques have changed by a quarter."""
@@ -268,7 +294,6 @@ class StaticTorqueSet:
             if not shape.is_empty:
                 self._shape = shape
                 self._radius = shape.edge_limit / self._edge_factor
-                self._region_end = int(self._held.indices[-1]) + 1
                 return
         to_next = np.asarray(KDTree(points).query(points, k=2)[0])[:, 1]
         self._radius = 0.5 * self._edge_factor * float(np.median(to_next))

@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from learning.exploration.static_projection import nearest_admissible
 from learning.static_torques import static_torque_set
 from learning.static_torques.static_torque_set import StaticTorqueSet
 from symbolic.errors import InputError
@@ -191,3 +192,48 @@ def test_bad_input_names_the_field():
         held.contains([np.nan, 1.0])
     with pytest.raises(InputError, match="number of held torques"):
         held.nearest([1.0, 1.0])
+
+
+def test_the_set_grows_to_its_border_while_few_torques_fail():
+    rng = np.random.default_rng(8)
+    half = np.array([16.0, 4.0])  # the true set: a box
+    held = StaticTorqueSet(2, resolution=1 / 64)
+    held.add(rng.uniform(-0.8, 0.8, (400, 2)) * half)
+    before = np.prod(np.ptp(held.torques, axis=0) / (2 * half))
+    failed = 0
+    for _ in range(500):
+        wanted = nearest_admissible(held, rng.choice([-1.2, 1.2]) * rng.random(2) * half, True)
+        if (np.abs(wanted) <= half).all():
+            held.add(wanted)
+        else:
+            failed += 1
+            held.mark_inadmissible(wanted)
+    assert failed <= 2 + 0.008 * (400 + 500)
+    assert np.prod(np.ptp(held.torques, axis=0) / (2 * half)) > before + 0.15
+
+
+def test_nothing_is_tried_beyond_the_mesh_while_too_many_admitted_torques_failed():
+    rng = np.random.default_rng(10)
+    held = StaticTorqueSet(2, resolution=1 / 16)
+    held.add(rng.uniform(-1, 1, (100, 2)))
+    corner = held.torques[held.torques.sum(axis=1).argmax()]
+    beyond = corner + 1e-3
+    assert held.contains(beyond)
+    for inside in ([0.0, 0.0], [-0.5, 0.1], [0.2, -0.4]):
+        held.mark_inadmissible(inside)
+    assert not held.contains(beyond)
+    held.add(rng.uniform(-0.9, 0.9, (400, 2)))
+    assert held.contains(beyond)
+
+
+def test_near_the_border_torques_are_stored_closer_together_but_not_without_end():
+    rng = np.random.default_rng(9)
+    held = StaticTorqueSet(2, resolution=1 / 16)
+    held.add(rng.uniform(-1, 1, (600, 2)))
+    before = len(held)
+    held.mark_inadmissible([0.2, 0.2])
+    held.add(rng.uniform(0.15, 0.25, (500, 2)))
+    near = np.linalg.norm(held.torques - [0.2, 0.2], axis=1) < 0.05
+    assert near.sum() > 10
+    held.add(rng.uniform(0.15, 0.25, (5000, 2)))
+    assert len(held) - before < 400
