@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from isotorque.data_relations import RelationsOfData
 from isotorque.data_remarks import analytic_remarks, outlier_remarks
 from isotorque.experiment import Progress
 from isotorque.lattice_learning import fitted_with_curve
@@ -17,25 +18,21 @@ from isotorque.learning_curve import DenseTest
 from isotorque.run_options import check_symmetries
 from isotorque.single_thread import single_thread
 from isotorque.stages import DATABASE
-from learning.held_out import HeldOut, held_out
-from learning.learners.by_name import LearningTask, check_learner, learner_by_name
+from learning.held_out import HeldOut
+from learning.learners.by_name import LearningTask, check_learner
 from learning.recordings.csv_data import StaticSamples, read_csv
 from learning.recordings.recorded_data import record_samples
 from learning.recordings.recording import Recording
 from learning.recordings.run_info import RunInfo
-from learning.relations.relation_learning import learn_relations
+from learning.relations.broken_symmetries import SupportedGroup
 from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryGroup
 from symbolic.robots import Robot, load_robot
-from symbolic.symmetries import primary_symmetries
 from verify.measured_torques import Disagreement, disagreement
 
 Array = NDArray[np.float64]
 
 MANY_ROWS = 1000
 """More samples than these are too many for a Gaussian process by default."""
-EQUATIONS = 2
-"""Equations per coefficient from which the form of rigid gravity is fitted without symmetries."""
 WORST = 10
 """Outliers that are named."""
 STAGE = "learning from data"
@@ -82,14 +79,6 @@ class DataOptions:
         return LearningTask(joints, rows, True, self.robot, self.snap, self.seed)
 
 
-@dataclass(frozen=True, eq=False)
-class _Relations:
-    """Relations to exploit, and what to say about them."""
-
-    group: SymmetryGroup | None
-    remarks: tuple[str, ...] = field(default=())
-
-
 @single_thread()
 def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> LearnedModel:
     """Learn relations and a model from a recording, and say how far it can be trusted.
@@ -123,30 +112,20 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     name = options.learner or ("gaussian-process" if len(samples.q) <= MANY_ROWS else "network")
     task = options.task(samples)
 
-    progress(STAGE, 0, 4, "relations")
+    stages = iter(range(4))
+    found = RelationsOfData(samples, name, task).find(
+        options.symmetries, gravity, lambda note: progress(STAGE, next(stages), 3, note)
+    )
+    group, tried = found.group, found.tried
     everything = np.zeros(len(samples.q), dtype=bool)
-    relations = _relations(options, gravity, samples, everything)
-    left_out = everything
-    if options.symmetries == "learned" and relations.group is None:
-        # one wrong row hides every symmetry: look for such rows, and then again for symmetries
-        left_out = _screened(name, task, samples)
-        if left_out.any():
-            relations = _relations(options, gravity, samples, left_out)
-    progress(STAGE, 1, 4, "errors on held out rows")
-    tried = _tried(name, relations.group, task, samples)
     unfit = everything if tried is None else tried.outliers
-    if options.symmetries == "learned" and not np.array_equal(unfit, left_out):
-        relations = _relations(options, gravity, samples, unfit)
-        tried = _tried(name, relations.group, task, samples)
-        unfit = everything if tried is None else tried.outliers
-    group = relations.group
-    progress(STAGE, 3, 4, "model")
+    progress(STAGE, next(stages), 3, "model")
     used = ~unfit if options.drop_outliers else ~everything
     order = np.random.default_rng(options.seed).permutation(np.flatnonzero(used))
     learner, curve = fitted_with_curve(
         name, task, group, samples.q[order], samples.tau[order], DenseTest(robot, gravity)
     )
-    progress(STAGE, 4, 4, "")
+    progress(STAGE, next(stages), 3, "")
     compared = disagreement(samples.q, samples.tau, gravity, leave_out=unfit)
     return LearnedModel(
         robot,
@@ -158,7 +137,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
         1 if group is None else group.order,
         curve,
         (
-            *relations.remarks,
+            *found.remarks,
             *outlier_remarks(tried, options.drop_outliers, WORST),
             *analytic_remarks(compared, tried, samples, robot),
         ),
@@ -167,6 +146,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
                 "file": str(options.file),
                 "rows": len(samples.q),
                 "outliers": _outliers(tried),
+                "symmetry_test": _symmetry_test(found.test),
                 "held_out": _held_out(tried),
                 "analytic": _analytic(compared),
             }
@@ -183,40 +163,6 @@ def _record(robot: Robot, samples: StaticSamples, out: Path) -> None:
         recording.finish()
 
 
-def _relations(
-    options: DataOptions, gravity: GravityModel, samples: StaticSamples, left_out: NDArray[np.bool_]
-) -> _Relations:
-    if options.symmetries == "none":
-        return _Relations(None)
-    if options.symmetries == "exact":
-        return _Relations(primary_symmetries(gravity.potential))
-    learned = learn_relations(samples.q[~left_out], samples.tau[~left_out])
-    said = f"{learned.order} symmetry relations learned from the data"
-    if learned.missing:
-        said += f"; missing: {learned.missing}"
-    if left_out.any():
-        said += f"; {int(left_out.sum())} outliers left out for that"
-    known = learned.order > 1 or learned.group.rank < learned.group.n
-    return _Relations(learned.group if known else None, (said,))
-
-
-def _tried(
-    name: str, group: SymmetryGroup | None, task: LearningTask, samples: StaticSamples
-) -> HeldOut | None:
-    if len(samples.q) < 2:
-        return None
-    rng = np.random.default_rng(task.seed)
-    return held_out(lambda: learner_by_name(name, group, task), samples.q, samples.tau, rng)
-
-
-def _screened(name: str, task: LearningTask, samples: StaticSamples) -> NDArray[np.bool_]:
-    """Outliers by the form of rigid gravity where the rows suffice for it, else by the learner."""
-    rows, joints = samples.q.shape
-    plenty = rows * joints >= EQUATIONS * 3**joints
-    tried = _tried("trigonometric" if plenty else name, None, task, samples)
-    return np.zeros(rows, dtype=bool) if tried is None else tried.outliers
-
-
 def _outliers(tried: HeldOut | None) -> dict[str, Any] | None:
     if tried is None:
         return None
@@ -225,6 +171,18 @@ def _outliers(tried: HeldOut | None) -> dict[str, Any] | None:
         "count": int(tried.outliers.sum()),
         "worst_rows": worst + 1,
         "errors": tried.errors[worst],
+    }
+
+
+def _symmetry_test(test: SupportedGroup | None) -> dict[str, Any] | None:
+    if test is None:
+        return None
+    return {
+        "relations": len(test.tested) + 1,
+        "contradicted": len(test.contradicted),
+        "kept": test.group.order,
+        "testable": test.testable,
+        "p_value": test.p_value,
     }
 
 

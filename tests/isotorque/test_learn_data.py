@@ -92,6 +92,24 @@ def test_disagreement_with_the_robot_file_is_told_in_numbers(learn, tmp_path):
     assert found["rmse_torque"] > 0.3
 
 
+@pytest.mark.parametrize("symmetries", ["exact", "learned"])
+def test_symmetries_that_the_arm_does_not_have_are_not_enforced(learn, tmp_path, symmetries):
+    # a cable pulls the elbow: a constant torque that no change of sign leaves alone
+    data = recording(tmp_path / "arm.csv", 80, change=lambda q, tau: np.add(tau, [0.0, 0.4]))
+    options = ("--learner", "recursive-least-squares", "--symmetries")
+    found = learn(tmp_path, data, *options, symmetries)
+    assert found["relations"] < 8
+    if symmetries == "exact":
+        test = found["data"]["symmetry_test"]
+        assert (test["relations"], test["kept"]) == (8, found["relations"])
+        assert test["contradicted"] >= 4
+        assert any("do not hold on this arm" in remark for remark in found["remarks"])
+    whole = recording(tmp_path / "whole.csv", 80)
+    found = learn(tmp_path / "whole", whole, *options, symmetries)
+    assert found["relations"] == 8
+    assert found["data"]["symmetry_test"]["contradicted"] == 0
+
+
 @pytest.mark.parametrize(
     ("change", "word"),
     [(lambda q, tau: -tau, "opposite sign"), (lambda q, tau: GRAVITY.torque(np.deg2rad(q)), "rad")],
