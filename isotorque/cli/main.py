@@ -28,6 +28,9 @@ from symbolic.errors import InputError
 # typer may bring click along under a private name: take the class from typer's public one
 _ClickException: type[Exception] = typer.BadParameter.__mro__[2]
 
+INTERRUPTED = 130
+"""Exit status of a command that was interrupted."""
+
 app = typer.Typer(
     name="isotorque",
     help="The statics of robot arms and their symmetries: derived, learned, verified.",
@@ -74,16 +77,22 @@ def status(arguments: list[str]) -> int:
     except InputError as error:
         return _refuse(str(error))
     except typer.Exit as error:
+        if error.exit_code == INTERRUPTED:  # what typer makes of Ctrl-C
+            return _interrupted()
         return error.exit_code
     except (KeyboardInterrupt, typer.Abort):
-        print("interrupted: everything recorded so far is kept", file=sys.stderr)
-        return 130
+        return _interrupted()
     except BrokenPipeError:  # the reader of our output went away, e.g. `| head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
         return _refuse(f"{error.filename or 'operating system'}: {error.strerror or error}")
     return code if isinstance(code, int) else 0
+
+
+def _interrupted() -> int:
+    print("interrupted: everything recorded so far is kept", file=sys.stderr)
+    return INTERRUPTED
 
 
 def _refuse(message: str) -> int:
