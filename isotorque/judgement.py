@@ -129,7 +129,11 @@ def _symmetry(run: RunOutcome) -> SymmetryReport | None:
     if run.options.symmetries == "none":
         return None
     if run.options.symmetries == "learned" and scheme.learned is not None:
-        report = judge_symmetries(scheme.learned, run.gravity, truth=run.group)
+        report = replace(
+            judge_symmetries(scheme.learned, run.gravity, truth=run.group),
+            secondary_pairs=sum(len(pairs) for pairs in scheme.learned.rejected),
+            contradicted=len(scheme.learned.contradicted),
+        )
     else:
         report = judge_relations(run.group, run.gravity, method="exact", truth=run.group)
     limits = run.arm.limits

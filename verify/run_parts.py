@@ -98,12 +98,18 @@ class SymmetryReport:
         How.
     missing : str
         What the data could not tell; empty where nothing is missing.
+    secondary_pairs : int
+        Pairs of recorded configurations with equal |torque| that no relation explains.
+    contradicted : int
+        Relations that such pairs seemed to show, rejected because other samples exclude them.
     """
 
     truth: SymmetryGroup
     relations: tuple[RelationReport, ...]
     method: str
     missing: str = ""
+    secondary_pairs: int = 0
+    contradicted: int = 0
 
     @property
     def found(self) -> int:

@@ -36,6 +36,19 @@ def test_relations_that_the_limits_forbid_are_marked(report):
     assert page.count("not executable within the joint limits") == executable.count(False)
 
 
+def test_secondary_pairs_are_reported(tmp_path):
+    out = tmp_path / "run"
+    # in this discovery the arm also settles in configurations of another primary set
+    assert status(["run", "2r", "--out", str(out), "--samples", "20", "--quiet"]) in (0, 1)
+    symmetry = json.loads((out / "report.json").read_text())["symmetry"]
+    assert status(["relations", str(out), "--quiet"]) == 0
+    pairs = json.loads((out / "relations.json").read_text())["secondary_pairs"]
+    assert symmetry["secondary_pairs"] == sum(kind["pairs"] for kind in pairs) > 0
+    assert symmetry["contradicted"] == 0
+    page = (out / "report.html").read_text()
+    assert f"{symmetry['secondary_pairs']} recorded pairs with equal" in page
+
+
 def test_the_static_torques_are_judged(report):
     document = json.loads((report / "report.json").read_text())["static_torques"]
     for when in ("discovered", "judgement"):
