@@ -24,6 +24,7 @@ def largest_value(
     samples: int = 512,
     refined: int = 4,
     seed: int = 0,
+    starts: ArrayLike | None = None,
 ) -> tuple[float, Vector]:
     """Search for the largest value of a function of the configuration.
 
@@ -43,6 +44,8 @@ def largest_value(
         How many of the best are climbed from (L-BFGS-B).
     seed
         Seed of the starting points: the same call finds the same point.
+    starts
+        More starting points, (k, n) [rad], within the limits.
 
     Returns
     -------
@@ -60,7 +63,8 @@ def largest_value(
     rng = np.random.default_rng(seed)
     box = np.array([[-np.pi, np.pi]] * n if limits is None else limits, dtype=float)
     middle = np.clip(np.zeros((1, n)), box[:, 0], box[:, 1])
-    points = np.concatenate([middle, rng.uniform(box[:, 0], box[:, 1], (samples, n))])
+    more = np.empty((0, n)) if starts is None else np.asarray(starts, dtype=float)
+    points = np.concatenate([middle, more, rng.uniform(box[:, 0], box[:, 1], (samples, n))])
     values = value(points)
     order = np.argsort(-values, kind="stable")[:refined]
     best, at = float(values[order[0]]), points[order[0]]

@@ -13,6 +13,7 @@ from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from verify.counterexamples import largest_value
+from verify.model_probes import equivariance_error, moved_to_limits, periodicity_error
 from verify.stability import has_stable_image, is_stable
 from verify.targets import TargetSet, dense_targets
 from verify.verdict import Status, Verdict
@@ -67,6 +68,10 @@ class ModelJudgement:
         Largest |predict(A q + d) - Y predict(q)| over the dense set and the group [N m].
     verdicts : tuple of Verdict
         The claims that follow from a tolerance.
+    periodicity_error : float
+        Largest |predict(q + 2 pi k) - predict(q)| over the dense set, k in {-1, 0, 1} [N m].
+    at_limits : TargetResult or None
+        Error where one joint is at a limit; None where no joint has limits within a turn.
     """
 
     targets: tuple[TargetResult, ...]
@@ -74,6 +79,8 @@ class ModelJudgement:
     worst_configuration: Array
     equivariance_error: float | None
     verdicts: tuple[Verdict, ...]
+    periodicity_error: float = 0.0
+    at_limits: TargetResult | None = None
 
     @property
     def rmse(self) -> float:
@@ -97,6 +104,7 @@ def verify_model(
     tolerance: float | None = None,
     largest_tolerance: float | None = None,
     equivariance_tolerance: float | None = None,
+    periodicity_tolerance: float | None = None,
 ) -> ModelJudgement:
     """Judge a learned model against the true gravity torque.
 
@@ -122,6 +130,8 @@ def verify_model(
         Largest torque error that is accepted [N m]; None to claim nothing.
     equivariance_tolerance
         Departure from equivariance that counts as none [N m]; None to claim nothing.
+    periodicity_tolerance
+        Change by whole turns that counts as none [N m]; None to claim nothing.
 
     Returns
     -------
@@ -134,9 +144,9 @@ def verify_model(
 
     Notes
     -----
-    The largest error is found by a search (random starts, then climbing): it is a lower bound of
-    the supremum, hence ``tested`` and never ``bounded``. Joints that feel no gravity
-    (``gravity.free_joints``) do not count in the RMSE over all joints.
+    The largest error is found by a search (random starts and the dense set's worst, then
+    climbing): it is a lower bound of the supremum, hence ``tested`` and never ``bounded``. Joints
+    that feel no gravity (``gravity.free_joints``) do not count in the RMSE over all joints.
 
     Examples
     --------
@@ -163,20 +173,29 @@ def verify_model(
     def size(q: Array) -> Array:
         return np.abs(errors(q)[:, active]).max(axis=1, initial=0.0)
 
-    largest, worst = largest_value(size, n, limits=box)
-    sampled = size(dense.q)
-    if sampled.max() > largest:
-        worst = dense.q[int(np.argmax(sampled))]
-    broken = None if group is None else _equivariance(predict, group, dense.q, active)
+    # the dense set covers one turn at most, so it lies within the limits
+    _, worst = largest_value(size, n, limits=box, starts=dense.q)
+    broken = None if group is None else equivariance_error(predict, group, dense.q, active)
+    turned = periodicity_error(predict, dense.q, active)
+    at_limits = moved_to_limits(dense, box)
     verdicts = _verdicts(
         results[0], size, worst, broken, tolerance, largest_tolerance, equivariance_tolerance
     )
+    if periodicity_tolerance is not None:
+        claim = f"whole turns change no torque by more than {periodicity_tolerance:g} Nm"
+        fails = turned[0] > periodicity_tolerance
+        status = Status.REFUTED if fails else Status.TESTED
+        verdicts += (Verdict(claim, status, turned[0], turned[1] if fails else None),)
     return ModelJudgement(
         targets=results,
         largest_error=np.abs(errors(worst[None, :])[0]),
         worst_configuration=worst,
         equivariance_error=None if broken is None else broken[0],
         verdicts=verdicts,
+        periodicity_error=turned[0],
+        at_limits=None
+        if at_limits is None
+        else _on(at_limits, errors, active, int(is_stable(at_limits.q, gravity).sum())),
     )
 
 
@@ -236,19 +255,6 @@ def _on(
     by_joint = np.sqrt(np.mean(found**2, axis=0))
     rmse = torque_rmse(found, active)
     return TargetResult(targets.name, len(targets.q), rmse, by_joint, stable=stable)
-
-
-def _equivariance(
-    predict: Callable[[Array], Array], group: SymmetryGroup, q: Array, active: Array
-) -> tuple[float, Array]:
-    here = predict(q)
-    worst, at = 0.0, q[0]
-    for relation in group:
-        error = np.abs(predict(relation.configuration(q)) - relation.torque(here))[:, active]
-        size = error.max(axis=1, initial=0.0)
-        if size.max() > worst:
-            worst, at = float(size.max()), q[int(np.argmax(size))]
-    return worst, at
 
 
 def _verdicts(

@@ -93,6 +93,41 @@ def test_a_model_that_breaks_a_symmetry_is_caught(two_link):
     assert found == pytest.approx(judgement.equivariance_error)
 
 
+def test_a_peak_that_random_starts_miss_is_climbed_from_the_dense_set(two_link):
+    start = dense_targets([[-np.pi, np.pi]] * 2).q[1234]
+    peak = start + 0.004
+
+    def bump(q):
+        distance = np.sum((q - peak) ** 2, axis=1) / 0.01**2
+        return np.stack([np.exp(-distance), 0 * distance], axis=1)
+
+    judgement = verify_model(Learned(two_link.gravity, bump), two_link.gravity)
+    assert np.allclose(judgement.worst_configuration, peak, atol=1e-4)
+    assert judgement.largest_error[0] == pytest.approx(1.0, abs=1e-4)
+
+
+def test_a_model_that_counts_turns_is_caught(two_link):
+    model = Learned(two_link.gravity, lambda q: 0.1 * (np.abs(q) > np.pi))
+    judgement = verify_model(model, two_link.gravity, periodicity_tolerance=0.01)
+    assert judgement.rmse == 0.0
+    assert judgement.periodicity_error == pytest.approx(0.1)
+    assert judgement.verdicts[-1].status is Status.REFUTED
+    periodic = verify_model(two_link.gravity.torque, two_link.gravity, periodicity_tolerance=1e-9)
+    assert periodic.periodicity_error < 1e-12
+    assert all_passed(periodic.verdicts)
+
+
+def test_errors_at_joint_limits_are_told_apart(two_link):
+    limits = np.array([[-1.0, 0.5], [-np.pi, np.pi]])
+    edge = Learned(two_link.gravity, lambda q: 1.0 * (np.abs(q + 0.25) > 0.75 - 1e-9) * [1.0, 0.0])
+    judgement = verify_model(edge, two_link.gravity, limits=limits)
+    assert judgement.rmse == 0.0
+    assert judgement.at_limits.name == "at joint limits"
+    assert judgement.at_limits.rmse_by_joint == pytest.approx([1.0, 0.0])
+    assert judgement.at_limits.count == len(dense_targets(limits).q)
+    assert verify_model(edge, two_link.gravity).at_limits is None
+
+
 def test_free_joints_do_not_count(upright):
     gravity = GravityModel(upright)
     assert gravity.free_joints == ("joint1",)
