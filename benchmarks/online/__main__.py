@@ -20,7 +20,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from benchmarks.online.comparison import comparison_rows
 from benchmarks.online.counted import three_joint_rows, two_joint_rows
-from benchmarks.online.literal import literal_rows
+from benchmarks.online.literal import literal_rows, mode_rows
 from benchmarks.online.noise import noise_rows
 from benchmarks.online.page import put_into_page
 from benchmarks.online.speed import speed_rows
@@ -28,6 +28,7 @@ from benchmarks.online.table import Row, table
 
 ROWS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
     "literal": literal_rows,
+    "modes": mode_rows,
     "2r": two_joint_rows,
     "3r": three_joint_rows,
     "speed": speed_rows,
