@@ -91,8 +91,8 @@ class RelationsOfData:
         if which == "learned" and not np.array_equal(unfit, left_out):
             group, remarks = self._learned(unfit)
             tried, unfit = self._tried(group)
-        if group is None:
-            return DataRelations(None, tried, None, remarks)
+        if group is None or not self._samples.tau.any():
+            return DataRelations(group, tried, None, remarks)
         test = supported_group(group, self._samples.q[~unfit], self._samples.tau[~unfit])
         if not test.whole:
             group = _worth_having(test.group)

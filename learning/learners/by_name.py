@@ -97,7 +97,8 @@ def _network(group: SymmetryGroup | None, task: LearningTask) -> Any:
 def _parametric(group: SymmetryGroup | None, task: LearningTask) -> Any:
     from learning.learners.static_regressor import StaticRegressor
 
-    return StaticRegressor(task.robot, snap=task.snap, group=group)
+    # the kinematics implies the relations; copies by measured ones would add their errors
+    return StaticRegressor(task.robot, snap=task.snap, group=None if task.noisy else group)
 
 
 ONLINE_LEARNERS: dict[str, Factory] = {

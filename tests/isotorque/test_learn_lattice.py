@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+import subprocess
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from learning.learners.by_name import LEARNERS
 from learning.recordings.recording_reader import RecordingReader
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot
+from tests.isotorque.test_kills import killed, recorded, start
 
 GUIDED = ArmOptions(physics="guided")
 
@@ -96,6 +98,24 @@ def test_a_stopped_lattice_goes_on_where_it_was(tmp_path):
         with sqlite3.connect(tmp_path / folder / "run.sqlite") as database:
             rows.append(list(database.execute("select * from command order by 1")))
     assert rows[0] == rows[1]
+
+
+@pytest.mark.slow
+def test_a_killed_lattice_ends_as_an_uninterrupted_one(tmp_path):
+    arguments = ["learn", "2r", "--strategy", "lattice", "--samples", 100]
+    arguments += ["--learner", "trigonometric", "--out"]
+    assert start([*arguments, tmp_path / "whole"], subprocess.DEVNULL).wait() == 0
+    content = recorded(tmp_path / "whole" / "run.sqlite")
+    path = tmp_path / "killed" / "run.sqlite"
+    for enough in (30, len(content) - 150, len(content) - 20):
+        child = start([*arguments, tmp_path / "killed"], subprocess.DEVNULL)
+        assert killed(child, path, enough)
+        assert enough <= len(recorded(path)) < len(content)
+    assert start([*arguments, tmp_path / "killed"], subprocess.DEVNULL).wait() == 0
+    assert recorded(path) == content
+    for file in ("model.npz", "model.json"):
+        models = [(tmp_path / folder / file).read_bytes() for folder in ("whole", "killed")]
+        assert models[0] == models[1]
 
 
 @pytest.mark.parametrize("learner", ["network", "gaussian-process"])
