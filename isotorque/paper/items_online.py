@@ -59,7 +59,7 @@ ONLINE_2R = (
     *_online_2r("", "literal-2r", _open_loop_why("rmse_66")),
     *_online_2r(", arm led and held", "guided-literal-2r", _guided_why),
     Item(
-        "share of the BCTS explored by then", "7.1.1, Fig. 10", "literal-2r",
+        "share of the BCTS explored after 3000 iterations", "7.1.1, Fig. 10", "literal-2r",
         number("explored_share"), 1.0, "", at_least(1.0 - MOST_OF_IT),
         lambda n: (
             f"{percent(n['explored_share'])}: next to the fold the arm gives way, and the set of "

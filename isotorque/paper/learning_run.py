@@ -84,8 +84,8 @@ class LearningRun:
         Torque RMSE by test set then [N m].
     explored_q : list of arrays
         Configurations learned from [rad].
-    explored_share : float or None
-        Share of the domain that was explored.
+    explored : list
+        Share of the domain explored at each evaluation; None where that is not watched.
     inadmissible, commands : int
         Torques that the arm could not hold, of all commanded.
     """
@@ -100,7 +100,7 @@ class LearningRun:
     samples: list[int] = field(default_factory=list)
     errors: list[dict[str, float]] = field(default_factory=list)
     explored_q: list[Array] = field(default_factory=list)
-    explored_share: float | None = None
+    explored: list[float | None] = field(default_factory=list)
     inadmissible: int = 0
     commands: int = 0
 
@@ -196,20 +196,22 @@ def _follow(
 ) -> None:  # fmt: skip
     evaluate_at = every(0)
     settled = 0
+    share: float | None = None
     for step in steps:
         if step.learned:
             run.explored_q.append(np.array(step.outcome.q))
-        run.explored_share = step.explored if step.explored is not None else run.explored_share
+        share = step.explored
         settled = exploration.counts.settled
         if settled >= evaluate_at:
-            _evaluate(run, settled)
+            _evaluate(run, settled, share)
             evaluate_at = settled + every(settled)
     if not run.samples or run.samples[-1] < settled:
-        _evaluate(run, settled)
+        _evaluate(run, settled, share)
     run.inadmissible = exploration.counts.inadmissible
     run.commands = exploration.counts.commands
 
 
-def _evaluate(run: LearningRun, samples: int) -> None:
+def _evaluate(run: LearningRun, samples: int, share: float | None) -> None:
     run.samples.append(samples)
+    run.explored.append(share)
     run.errors.append(run.sets.errors(run.learner))

@@ -55,7 +55,7 @@ def iterated(group: SymmetryGroup | None, _: Array) -> LocalLinearMap:
 def iterated_3r(group: SymmetryGroup | None, _: Array) -> LocalLinearMap:
     """The same with the prototypes further apart, for three joints."""
     return LocalLinearMap(
-        0.5, kernel_width=2.0, inner_iterations=None, relaxation=0.6, replay=60, group=group
+        0.5, kernel_width=2.0, inner_iterations=None, relaxation=0.6, replay=20, group=group
     )
 
 
@@ -88,7 +88,7 @@ def measure_guided_literal(robot: Robot, seed: int, effort: Effort) -> Measured:
 def _long_run(run: LearningRun) -> Measured:
     numbers: dict[str, Any] = {
         "samples": run.samples[-1],
-        "explored_share": run.explored_share,
+        "explored_share": run.explored[-1],
         "inadmissible": run.inadmissible / run.commands,
         "discovery_samples": len(run.motions),
     }
@@ -128,7 +128,7 @@ def measure_3r(robot: Robot, seed: int, effort: Effort) -> Measured:
     commands = effort.of(ITERATIONS_3R * SAMPLES_PER_ITERATION, 200)
     free = open_loop_run(robot, iterated_3r, WIDE_STEPS, commands, seed, _every)
     led = guided_run(robot, iterated_3r, WIDE_STEPS, commands, seed, _every)
-    numbers: dict[str, Any] = {"explored_share": free.explored_share}
+    numbers: dict[str, Any] = {"explored_share": free.explored[-1]}
     for name, key in _SETS_3R.items():
         numbers[f"rmse_{key}"] = free.errors[-1][name]
         numbers[f"iterations_{key}"] = _iterations(free, name, RMSE_3R)

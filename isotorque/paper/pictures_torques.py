@@ -48,8 +48,12 @@ def static_torque_pictures(data: Data) -> Iterator[Picture]:
     for name, key, words in (
         ("fig7a", "babbling", "Torques of the original Goal Babbling"),
         ("fig7b", "constrained_babbling", "Torques of Constrained Goal Babbling"),
-        ("fig7c", "sampling", "The same of the original Direction Sampling"),
-        ("fig7d", "constrained_sampling", "The same of Constrained Direction Sampling"),
+        ("directions-original", "sampling", "Torques of the original Direction Sampling"),
+        (
+            "directions-constrained",
+            "constrained_sampling",
+            "Torques of Constrained Direction Sampling",
+        ),
     ):
         held, refused = np.array(data[key]["held"]), np.array(data[key]["refused"])
         shape = (-1, held.shape[1])
