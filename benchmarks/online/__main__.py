@@ -6,7 +6,8 @@ the first evaluation after which the error stays below it to the end of the run.
 mean squares over joints and test configurations. Medians over seeds, the worst seed beside them.
 
 ``--write`` puts the table into docs/online.md; ``--long`` adds the 300,000 samples of the literal
-learner (one seed, some minutes).
+learner (one seed, some minutes). ``--keep DIR`` keeps finished runs, so that a benchmark that was
+stopped goes on when the command is given again.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -24,6 +26,7 @@ from benchmarks.online.literal import literal_rows, mode_rows
 from benchmarks.online.noise import noise_rows
 from benchmarks.online.page import put_into_page
 from benchmarks.online.speed import speed_rows
+from benchmarks.online.store import Store
 from benchmarks.online.table import Row, table
 
 ROWS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
@@ -41,18 +44,22 @@ def main() -> int:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--wide-seeds", type=int, default=10, help="seeds of the 3R in open loop")
+    parser.add_argument("--few-seeds", type=int, default=5, help="seeds of comparisons and noise")
     parser.add_argument("--long-seeds", type=int, default=3, help="seeds of 54,000 samples")
-    parser.add_argument("--noise-seeds", type=int, default=5, help="seeds of the noisy runs")
+    parser.add_argument("--mode-seeds", type=int, default=1, help="the same, geared and guided")
     parser.add_argument("--long", action="store_true", help="also 300,000 samples")
     parser.add_argument("--write", action="store_true", help="put the table into docs/online.md")
     parser.add_argument("--only", nargs="*", choices=list(ROWS), default=list(ROWS))
+    parser.add_argument("--keep", type=Path, help="keep finished runs here; go on from them")
     options = parser.parse_args()
+    options.store = Store(options.keep)
     rows: list[Row] = []
     for name in options.only:
         for row in ROWS[name](options):
             print(row.line(), file=sys.stderr, flush=True)
             rows.append(row)
-    text = f"Medians over {options.seeds} seeds where no other number is given.\n\n{table(rows)}"
+    text = table(rows)
     print(text)
     if options.write:
         put_into_page(text)

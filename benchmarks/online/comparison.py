@@ -38,11 +38,16 @@ WHY = (
 def comparison_rows(options: argparse.Namespace) -> Iterator[Row]:
     """Share of inadmissible torques and the model that is left."""
     truth = Truth.of("2r")
-    runs = all_seeds(options.seeds, lambda seed: scheme_run(truth, joint, QUICK, PLAN, seed))
+    runs = all_seeds(
+        options.store,
+        "1000-joint",
+        options.seeds,
+        lambda seed: scheme_run(truth, joint, QUICK, PLAN, seed),
+    )
     shares = _shares(runs)
     yield Row(
         "2R, inadmissible torques among 1,000 commands after discovery", "avoided", "under 1 %",
-        "", spread(shares, " %", 1), statistics.median(shares), 1.0, WHY,
+        "", spread(shares, " %", 1) + f", {len(runs)} seeds", statistics.median(shares), 1.0, WHY,
     )  # fmt: skip
     limits = truth.robot.limits
     goals = truth.sets["90"]
@@ -67,10 +72,11 @@ def comparison_rows(options: argparse.Namespace) -> Iterator[Row]:
         ("motor babbling", "-", lambda seed: _free_run(truth, seed, MotorBabbling)),
     )  # fmt: skip
     for what, demanded, run in ways:
-        runs = all_seeds(options.seeds, run)
+        runs = all_seeds(options.store, f"1000-{what}", options.few_seeds, run)
         here = (
             f"{spread(_shares(runs), ' %', 1)} inadmissible; "
-            f"model {spread([r.last('dense') for r in runs], ' Nm', 3)}"
+            f"model {spread([r.last('dense') for r in runs], ' Nm', 3)}, "
+            f"{len(runs)} seeds"
         )
         yield Row(f"2R, {what}: 1,000 commands, LLM with kappa and replay", "-", demanded, "", here)
 

@@ -30,14 +30,24 @@ def two_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
     """2R arm, open loop, everything learned in the same run."""
     truth = Truth.of("2r")
     plan = Plan(3000, 100, ("90", "dense"))
-    runs = all_seeds(options.seeds, lambda seed: scheme_run(truth, replayed, QUICK, plan, seed))
+    runs = all_seeds(
+        options.store,
+        "2r-replay",
+        options.seeds,
+        lambda seed: scheme_run(truth, replayed, QUICK, plan, seed),
+    )
     for name in plan.sets:
         yield _row(
             f"2R, LLM with kappa and replay: samples to {FINE} Nm, {name}", "3,000", 2000,
             "1,000", runs, name, FINE,
         )  # fmt: skip
     plan = Plan(300, 5, ("dense",))
-    runs = all_seeds(options.seeds, lambda seed: scheme_run(truth, joint, QUICK, plan, seed))
+    runs = all_seeds(
+        options.store,
+        "2r-joint",
+        options.seeds,
+        lambda seed: scheme_run(truth, joint, QUICK, plan, seed),
+    )
     found = statistics.median(run.discovery for run in runs)
     yield _row(
         f"2R, joint least squares: samples to {FINE} Nm, dense, learned symmetries", "-", 120,
@@ -49,13 +59,23 @@ def three_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
     """3R arm: open loop on the part of the torus it can learn by itself, guided on all of it."""
     truth = Truth.of("3r")
     plan = Plan(3000, 100, ("stable",))
-    runs = all_seeds(options.seeds, lambda seed: scheme_run(truth, replayed_3r, WIDE, plan, seed))
+    runs = all_seeds(
+        options.store,
+        "3r-replay",
+        options.wide_seeds,
+        lambda seed: scheme_run(truth, replayed_3r, WIDE, plan, seed),
+    )
     yield _row(
         f"3R, LLM with kappa and replay: samples to {COARSE_3R} Nm, stable part", "14,000", 1500,
         "300", runs, "stable", COARSE_3R,
     )  # fmt: skip
     plan = Plan(1000, 20, ("stable",))
-    runs = all_seeds(options.seeds, lambda seed: scheme_run(truth, joint, WIDE, plan, seed))
+    runs = all_seeds(
+        options.store,
+        "3r-joint",
+        options.wide_seeds,
+        lambda seed: scheme_run(truth, joint, WIDE, plan, seed),
+    )
     for threshold, demanded, stretch in ((COARSE_3R, 200, "60"), (FINE_3R, 400, "150")):
         yield _row(
             f"3R, joint least squares, open loop: samples to {threshold} Nm, stable part", "-",
@@ -63,7 +83,10 @@ def three_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
         )  # fmt: skip
     plan = Plan(400, 10, ("dense",))
     guided = all_seeds(
-        options.seeds, lambda seed: guided_run(truth, joint(truth.group), GUIDED, plan, seed)
+        options.store,
+        "3r-guided",
+        options.seeds,
+        lambda seed: guided_run(truth, joint(truth.group), GUIDED, plan, seed),
     )
     for threshold, demanded, stretch in ((COARSE_3R, 200, "60"), (FINE_3R, 400, "150")):
         yield _row(
@@ -77,7 +100,7 @@ def _row(
     threshold: float, *, note: str = "", why: str = "",
 ) -> Row:  # fmt: skip
     counts = [run.reached(name, threshold) for run in runs]
-    here = spread(counts, "", 0) + note
+    here = spread(counts, "", 0) + f", {len(runs)} seeds" + note
     last = statistics.median(run.last(name) for run in runs)
     if statistics.median(counts) > demanded:
         here += f"; {last:.3g} Nm at the end of {runs[0].curve[name][-1][0]}"

@@ -24,12 +24,16 @@ def literal_rows(options: argparse.Namespace) -> Iterator[Row]:
     truth = Truth.of("2r")
     plan = Plan(54_000, 18_000, SETS)
     runs = all_seeds(
-        options.long_seeds, lambda seed: scheme_run(truth, literal, LITERAL, plan, seed)
-    )
+        options.store, "literal", options.long_seeds,
+        lambda seed: scheme_run(truth, literal, LITERAL, plan, seed),
+    )  # fmt: skip
     yield from _rows(runs, "at 54,000 samples", "0.0053 Nm", 0.0061)
     if options.long:
         long = Plan(300_000, 100_000, SETS)
-        runs = [scheme_run(truth, literal, LITERAL, long, 0)]
+        runs = all_seeds(
+            options.store, "literal-long", 1,
+            lambda seed: scheme_run(truth, literal, LITERAL, long, seed),
+        )  # fmt: skip
         yield from _rows(runs, "at 300,000 samples", "0.0024 Nm", 0.003)
 
 
@@ -38,11 +42,15 @@ def mode_rows(options: argparse.Namespace) -> Iterator[Row]:
     truth = Truth.of("2r")
     plan = Plan(54_000, 18_000, SETS)
     geared = all_seeds(
-        options.long_seeds,
+        options.store,
+        "geared",
+        options.mode_seeds,
         lambda seed: scheme_run(truth, literal, LITERAL, plan, seed, physics="geared"),
     )
     guided = all_seeds(
-        options.long_seeds,
+        options.store,
+        "guided",
+        options.mode_seeds,
         lambda seed: guided_run(truth, literal(truth.group), LITERAL, plan, seed),
     )
     for name, found in (("geared (friction holds the arm)", geared), ("guided", guided)):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.online.learners import QUICK, joint_for_noise
-from benchmarks.online.runs import Plan, scheme_run
+from benchmarks.online.runs import Plan, Run, scheme_run
 from benchmarks.online.table import Row, spread
 from benchmarks.online.truth import Truth
 from learning.physics import MeasurementNoise
@@ -43,15 +43,10 @@ def noise_rows(options: argparse.Namespace) -> Iterator[Row]:
     plan = Plan(SAMPLES[-1] + 50, 10, ("dense",))
     errors: dict[int, list[float]] = {samples: [] for samples in SAMPLES}
     bounds: dict[int, list[float]] = {samples: [] for samples in SAMPLES}
-    for seed in range(options.noise_seeds):
-        recorders: list[Recorder] = []
-
-        def make(group: Any, _: Any, recorders: list[Recorder] = recorders) -> Recorder:
-            recorders.append(Recorder(joint_for_noise(group)))
-            return recorders[-1]
-
-        run = scheme_run(truth, make, QUICK, plan, seed, noise=NOISE)
-        visited = np.array(recorders[-1].kept)
+    for seed in range(options.few_seeds):
+        run, visited = options.store.get(
+            f"noise-{seed}", lambda seed=seed: _noisy_run(truth, plan, seed)
+        )
         for samples in SAMPLES:
             errors[samples].append(next(e for n, e in run.curve["dense"] if n >= samples))
             bounds[samples].append(cramer_rao(truth, visited[:samples], NOISE))
@@ -63,6 +58,17 @@ def noise_rows(options: argparse.Namespace) -> Iterator[Row]:
             f"{spread(found, ' Nm', 4)}, {len(found)} seeds; Cramer-Rao bound {bound:.4f} Nm, "
             f"{statistics.median(found) / bound:.1f} times it",
         )  # fmt: skip
+
+
+def _noisy_run(truth: Truth, plan: Plan, seed: int) -> tuple[Run, np.ndarray]:
+    recorders: list[Recorder] = []
+
+    def make(group: Any, _: Any) -> Recorder:
+        recorders.append(Recorder(joint_for_noise(group)))
+        return recorders[-1]
+
+    run = scheme_run(truth, make, QUICK, plan, seed, noise=NOISE)
+    return run, np.array(recorders[-1].kept)
 
 
 def cramer_rao(truth: Truth, q: np.ndarray, noise: MeasurementNoise) -> float:

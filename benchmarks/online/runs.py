@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.online.store import Store
 from benchmarks.online.truth import Truth
 from learning.exploration.loop import Exploration
 from learning.exploration.settings import ExplorationSettings
@@ -140,9 +141,12 @@ def _watched(
     return curve
 
 
-def all_seeds(count: int, run: Callable[[int], Run]) -> list[Run]:
-    """One run for each seed from 0 on."""
-    return [run(seed) for seed in range(count)]
+def all_seeds(store: Store, name: str, count: int, run: Callable[[int], Run]) -> list[Run]:
+    """One run for each seed from 0 on, under this name in the store."""
+    return [
+        store.get(f"{name}-{seed}", lambda seed=seed: run(seed))  # type: ignore[misc]
+        for seed in range(count)
+    ]
 
 
 def last_errors(runs: Sequence[Run], name: str) -> list[float]:
