@@ -8,13 +8,27 @@ import pytest
 from isotorque.cli.main import status
 from learning.export.array_files import read_export
 from learning.export.torque_form import evaluate
+from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.local_linear_map import LocalLinearMap
+from learning.learners.network import FeedForwardNetwork
 from learning.learners.recursive_least_squares import RecursiveLeastSquares
-from learning.model_files import SavedModel, save_model
+from learning.learners.static_regressor import StaticRegressor
+from learning.learners.trigonometric import EquivariantTrigonometric
+from learning.model_files import CLASSES, SavedModel, save_model
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot
 from tests.learning.export.compiled import build, call, needs_cc
-from tests.learning.export.models import far_queries, samples
+from tests.learning.export.models import QUICK, far_queries, samples
+
+#: One of every kind that can be saved, and the kind of its export.
+LEARNERS = [
+    (LocalLinearMap(0.4), "local functions"),
+    (RecursiveLeastSquares(), "local functions"),
+    (FeedForwardNetwork(5, **QUICK), "tanh units"),
+    (EquivariantTrigonometric(), "waves"),
+    (StaticRegressor("2r"), "waves"),
+    (SymmetricGaussianProcess(0.1, length_scale=1.5), "kernels"),
+]
 
 
 @pytest.fixture
@@ -43,14 +57,14 @@ def saved(tmp_path):
 
 
 @needs_cc
-@pytest.mark.parametrize("learner", [LocalLinearMap(0.4), RecursiveLeastSquares()])
-def test_a_saved_model_in_all_three_forms(learner, export, saved, tmp_path):
+@pytest.mark.parametrize(("learner", "kind"), LEARNERS)
+def test_a_saved_model_in_all_three_forms(learner, kind, export, saved, tmp_path):
     import casadi
 
     folder, model = saved(learner)
     c, function, npz = (tmp_path / name for name in ("g.c", "g.casadi", "g.npz"))
     found = export(folder, "--c", c, "--casadi", function, "--npz", npz)
-    assert found["kind"] == "local functions"
+    assert found["kind"] == kind
     assert [found[k] for k in ("c", "casadi", "npz", "json")] == [
         str(c), str(function), str(npz), str(tmp_path / "g.json")
     ]  # fmt: skip
@@ -66,6 +80,10 @@ def test_a_saved_model_in_all_three_forms(learner, export, saved, tmp_path):
     arrays = read_export(npz)
     assert arrays.digest == model.digest
     assert np.abs(evaluate(arrays.form, q) - expected).max() < 1e-12 * size
+
+
+def test_every_kind_that_can_be_saved_is_tried():
+    assert {type(learner).__name__ for learner, _ in LEARNERS} == set(CLASSES)
 
 
 @needs_cc
