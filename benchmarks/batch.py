@@ -69,9 +69,9 @@ SAMPLES = {
 }
 #: The same where samples are noisy.
 NOISY = {
-    "2r": {"exact": (16, 64, 255), "learned": (64,), "none": (64, 255, 1020)},
-    "3r": {"exact": (16, 65, 150), "learned": (65,), "none": (65, 150, 600)},
-    "ur5": {"exact": (16, 65), "learned": (65,), "none": (150, 300)},
+    "2r": {"exact": (16, 64, 255), "learned": (64,), "none": (64, 255)},
+    "3r": {"exact": (16, 65, 150), "learned": (65,), "none": (65, 150, 300)},
+    "ur5": {"exact": (16, 65), "learned": (65,), "none": (150,)},
 }
 #: Samples, not counted above, from which a group is learned: without and with noise.
 TO_LEARN_GROUP = {"2r": (30, 120), "3r": (60, 200), "ur5": (300, 600)}
