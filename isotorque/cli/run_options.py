@@ -11,8 +11,8 @@ Samples = Annotated[
     typer.Option(
         "--samples",
         min=1,
-        help="Torques commanded, or configurations of the lattice. [default: 3000 for an online"
-        " learner, 500 for a batch learner, 255 for a lattice]",
+        help="Torques commanded, or configurations of the lattice; by default 3000 for an online"
+        " learner, 500 for a batch learner, 255 for a lattice.",
         show_default=False,
     ),
 ]
@@ -22,8 +22,8 @@ LearnerName = Annotated[
         "--learner",
         metavar="NAME",
         help="Online: local-linear-map, local-linear-map-it, recursive-least-squares; batch:"
-        " network, gaussian-process, trigonometric, parametric. [default: local-linear-map-it;"
-        " network for a lattice]",
+        " network, gaussian-process, trigonometric, parametric; by default local-linear-map-it,"
+        " for a lattice network, for data gaussian-process.",
         show_default=False,
     ),
 ]
