@@ -90,6 +90,14 @@ def test_what_is_reached_is_held_and_level_sets_agree(numbers, stable_only, seed
     assert (truth.distance(torques)[reached] < 1e-6).all()
 
 
+def test_no_admission_is_called_false_before_its_level_set_is_asked(gravity, monkeypatch):
+    found = judge_static_torques(Slanted(1.1), gravity, FULL, samples=300)
+    monkeypatch.setattr(TrueStaticTorques, "reached", lambda self, torques: np.zeros(300, bool))
+    asked = judge_static_torques(Slanted(1.1), gravity, FULL, samples=300)
+    np.testing.assert_array_equal(asked.false_torques, found.false_torques)
+    assert asked.common_volume == found.common_volume > 0
+
+
 def test_limits_take_torques_away(gravity):
     hanging = [[-2.0, -1.0], [-0.3, 0.3]]
     judged = judge_static_torques(Slanted(1.0), gravity, hanging, samples=600)
