@@ -13,9 +13,9 @@ from benchmarks.online.truth import Truth
 
 SETS = ("66", "90", "dense")
 WHY = (
-    "The learner reaches the demand wherever it has samples; what remains lies in the corners of "
-    "the fundamental domain, where both joints are about to lose their stiffness and a constant "
-    "torque throws the arm over: see below."
+    "Where it has samples the learner is as good as with ideal ones; what is left lies along the "
+    "edges of what open loop can hold and in the corners between them, where a step along one "
+    "edge throws the other link over."
 )
 
 

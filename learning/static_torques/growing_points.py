@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
+from scipy.spatial import cKDTree
 
 from symbolic.errors import InputError
 
@@ -43,7 +43,7 @@ class GrowingPoints:
         self._present = np.zeros(32, dtype=bool)
         self._end = 0
         self._count = 0
-        self._tree: KDTree | None = None
+        self._tree: cKDTree | None = None
         self._tree_indices = np.empty(0, dtype=np.intp)
         self._tree_end = 0
         self._removed_from_tree = 0
@@ -115,6 +115,8 @@ class GrowingPoints:
         if changes > max(32, len(self._tree_indices) // 8):
             self._build_tree()
         distances, indices = self._nearest_in_tree(queries)
+        if self._tree_end == self._end:
+            return distances, indices
         waiting = self._tree_end + np.flatnonzero(self._present[self._tree_end : self._end])
         if len(waiting):
             difference = queries[:, None, :] - self._store[waiting][None, :, :]
@@ -128,7 +130,7 @@ class GrowingPoints:
 
     def _build_tree(self) -> None:
         self._tree_indices = self.indices
-        self._tree = KDTree(self.points) if len(self._tree_indices) else None
+        self._tree = cKDTree(self.points) if len(self._tree_indices) else None
         self._tree_end = self._end
         self._removed_from_tree = 0
 
@@ -137,6 +139,9 @@ class GrowingPoints:
         indices = np.full(len(queries), -1, dtype=np.intp)
         if self._tree is None:
             return distances, indices
+        if not self._removed_from_tree:
+            distances, position = self._tree.query(queries)
+            return np.asarray(distances), self._tree_indices[position]
         left = np.arange(len(queries))  # queries that met removed points only so far
         size, k = len(self._tree_indices), 1
         while len(left):
