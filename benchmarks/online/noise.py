@@ -40,7 +40,7 @@ class Recorder:
 def noise_rows(options: argparse.Namespace) -> Iterator[Row]:
     """Errors at some numbers of samples, 0.1 degrees and 0.01 Nm of noise, dense set."""
     truth = Truth.of("2r")
-    plan = Plan(SAMPLES[-1] + 50, 10, ("dense",))
+    plan = Plan(SAMPLES[-1] + 300, 10, ("dense",))
     errors: dict[int, list[float]] = {samples: [] for samples in SAMPLES}
     bounds: dict[int, list[float]] = {samples: [] for samples in SAMPLES}
     for seed in range(options.few_seeds):
