@@ -30,7 +30,7 @@ def test_curves_are_interpolated_on_logarithmic_scales():
 def test_the_factor_is_that_of_the_curves():
     found = {item["error"]: item["ratio"] for item in equal_errors(ROWS)}
     assert found[0.01] == pytest.approx([8.0, 8.0])
-    assert "8.0 to 8.0 times on 2r, whose group has order 8" in sentence(ROWS)
+    assert "8.0 to 8.0 times the samples on 2r, whose group has order 8" in sentence(ROWS)
 
 
 def test_what_contains_the_truth_makes_no_factor():
