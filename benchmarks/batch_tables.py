@@ -113,8 +113,8 @@ def sentence(rows: list[Row]) -> str:
         )
         more = f" (and {beyond} times no number tried sufficed without)" if beyond else ""
         parts.append(
-            f"{min(ratios):.1f} to {max(ratios):.1f} times the samples on {robot}, whose group has order "
-            f"{of_robot[0]['order']:g}{more}"
+            f"{min(ratios):.1f} to {max(ratios):.1f} times the samples on {robot}, "
+            f"whose group has order {of_robot[0]['order']:g}{more}"
         )
     if not parts:
         return "No entry resolves the factor."
