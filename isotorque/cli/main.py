@@ -77,8 +77,6 @@ def status(arguments: list[str]) -> int:
     except InputError as error:
         return _refuse(str(error))
     except typer.Exit as error:
-        if error.exit_code == INTERRUPTED:  # what typer makes of Ctrl-C
-            return _interrupted()
         return error.exit_code
     except (KeyboardInterrupt, typer.Abort):
         return _interrupted()
@@ -87,6 +85,8 @@ def status(arguments: list[str]) -> int:
         return 0
     except OSError as error:
         return _refuse(f"{error.filename or 'operating system'}: {error.strerror or error}")
+    if code == INTERRUPTED:  # what typer makes of Ctrl-C
+        return _interrupted()
     return code if isinstance(code, int) else 0
 
 
