@@ -19,8 +19,8 @@ CELLS_PER_RANGE = {1: 512, 2: 128, 3: 40}
 CELLS_PER_RANGE_BEYOND = 16
 FINEST = 1.0 / 32.0  # of a cell: torques are not told apart more finely
 GRADE = 0.25  # near the border torques are stored this share of the distance to it apart
-BORDER = 1.0  # of the spacing: how far beyond the mesh a torque may be tried ...
-CAUTION = 0.15  # ... and at most this share of the distance to one that failed, beyond ...
+BORDER = (0.1, 1.0)  # of the spacing: how far beyond the mesh; second: once a torque has failed
+CAUTION = 0.15  # but at most this share of the distance to one that failed, beyond ...
 BUDGET = 0.008  # nothing is tried beyond the mesh while more of the admitted torques failed
 MARGIN = 1.0 / 16.0  # ... so much of a cell
 
@@ -166,8 +166,9 @@ class StaticTorqueSet:
             admitted = nearer & (to_held <= self._radius)
         else:
             room = CAUTION * (to_refused - MARGIN / self._cells_per_range)
-            trusted = self._failed <= 1 + BUDGET * self._seen
-            admitted = nearer & (to_held <= np.clip(room, 0.0, trusted * BORDER * self._radius))
+            reach = BORDER[len(self._refused) > 0] * self._radius
+            reach *= self._failed <= 1 + BUDGET * self._seen
+            admitted = nearer & (to_held <= np.clip(room, 0.0, reach))
             if not admitted.all():
                 admitted |= nearer & self._shape.contains(scaled[:, active])
         if not active.all() and len(self):
