@@ -19,7 +19,7 @@ CELLS_PER_RANGE = {1: 512, 2: 128, 3: 40}
 CELLS_PER_RANGE_BEYOND = 16
 FINEST = 1.0 / 32.0  # of a cell: torques are not told apart more finely
 GRADE = 0.25  # near the border torques are stored this share of the distance to it apart
-BORDER = (0.1, 1.0)  # of the spacing: how far beyond the mesh; second: once a torque has failed
+BORDER = (0.1, 0.3)  # of the spacing: how far beyond the mesh; second: once a torque has failed
 CAUTION = 0.15  # but at most this share of the distance to one that failed, beyond ...
 BUDGET = 0.008  # nothing is tried beyond the mesh while more of the admitted torques failed
 MARGIN = 1.0 / 16.0  # ... so much of a cell
@@ -45,7 +45,7 @@ class StaticTorqueSet:
     nearer to one of them than to any torque marked inadmissible. The region is the Delaunay mesh
     of the held torques without its long simplices (`AlphaShape`) for up to three joints whose
     torque varies, otherwise a union of balls around them. Beyond the mesh a torque may be tried
-    with caution: one spacing away from a held one at most, far nearer to it than to any that
+    with caution: 0.3 spacings away from a held one at most, far nearer to it than to any that
     failed, and while less than 0.8 % of the torques admitted failed. Torques are compared in
     units of their range per joint, rounded up to a power of two; a joint that always had the same
     torque (a free joint) must have it again. The last observation of a torque wins.
