@@ -35,7 +35,6 @@ from sklearn.exceptions import ConvergenceWarning
 from benchmarks.batch_learners import learners, runs
 from benchmarks.batch_tables import Row, equal_errors, tables
 from benchmarks.document import write_between
-from isotorque.paper_targets import paper_targets
 from learning.relations.relation_learning import learn_relations
 from learning.sampling.lattice import lattice_samples
 from learning.sampling.sampling_region import SamplingRegion
@@ -44,6 +43,7 @@ from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup, identity
 from symbolic.robots import load_robot
 from symbolic.symmetries import primary_symmetries
+from verify.paper_targets import paper_targets
 
 PAGE = Path(__file__).parents[1] / "docs" / "batch.md"
 DENSE = 1500

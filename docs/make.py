@@ -5,9 +5,9 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from isotorque.experiment import run_experiment
-from isotorque.judgement import judge_run
-from isotorque.run_options import RunOptions
+from isotorque.runs.experiment import run_experiment
+from isotorque.runs.judgement import judge_run
+from isotorque.runs.run_options import RunOptions
 from verify.figures.style import to_svg
 from verify.report_figures import report_pictures
 

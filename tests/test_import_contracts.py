@@ -40,7 +40,7 @@ def test_contracts_hold(tmp_path):
         ("learning/learners/local_linear_map.py", "import pinocchio"),
         ("learning/scheme.py", "from learning.simulation.simulated_arm import SimulatedArm"),
         ("symbolic/relations.py", "import learning.arm"),
-        ("verify/verdict.py", "import isotorque.experiment"),
+        ("verify/verdict.py", "import isotorque.runs.experiment"),
     ],
 )
 def test_a_planted_import_breaks_them(tmp_path, planted):

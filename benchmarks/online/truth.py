@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from isotorque.paper_targets import paper_targets
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from symbolic.robots import Robot, load_robot
 from symbolic.symmetries import primary_symmetries
+from verify.paper_targets import paper_targets
 from verify.targets import dense_targets
 
 STABLE = 0.01

@@ -30,7 +30,7 @@ def derive(
     quiet: Quiet = False,
 ) -> None:
     """Derive the gravity torque, checked against Pinocchio every time."""
-    from isotorque.cli.files import write_whole
+    from isotorque.files import write_whole
     from symbolic.gravity import GravityModel
     from symbolic.gravity_c import gravity_c
     from symbolic.gravity_casadi import gravity_casadi

@@ -40,10 +40,10 @@ def discover(
 
     The same command resumes what was stopped; `relations` and `learn` go on from OUT.
     """
-    from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.experiment import discover_symmetries
-    from isotorque.run_options import ArmOptions, RunOptions
+    from isotorque.files import output_directory
+    from isotorque.runs.experiment import discover_symmetries
+    from isotorque.runs.run_options import ArmOptions, RunOptions
     from learning.arm import OutcomeKind
 
     arm = ArmOptions(

@@ -47,7 +47,7 @@ def export(
     quiet: Quiet = False,
 ) -> None:
     """Write a torque map as C source, as a CasADi function, as arrays; checked each time."""
-    from isotorque.cli.files import write_whole
+    from isotorque.files import write_whole
     from symbolic.errors import InputError
 
     if c is casadi is npz is None:

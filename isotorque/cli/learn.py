@@ -74,14 +74,14 @@ def learn(
 
     A lattice is visited with guided physics; what is not given is as in the discovery.
     """
-    from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.data_learning import DataOptions, learn_from_data
-    from isotorque.experiment import run_experiment
-    from isotorque.lattice_learning import learn_from_lattice
-    from isotorque.learn_options import learn_options
-    from isotorque.learned_model import model_of_run
-    from isotorque.run_options import LATTICE
+    from isotorque.files import output_directory
+    from isotorque.runs.data_learning import DataOptions, learn_from_data
+    from isotorque.runs.experiment import run_experiment
+    from isotorque.runs.lattice_learning import learn_from_lattice
+    from isotorque.runs.learn_options import learn_options
+    from isotorque.runs.learned_model import model_of_run
+    from isotorque.runs.run_options import LATTICE
 
     given = _given(context)
     if data is not None:

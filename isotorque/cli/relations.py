@@ -64,8 +64,8 @@ def relations(
     """
     import json as text
 
-    from isotorque.cli.files import write_whole
-    from isotorque.experiment import DATABASE
+    from isotorque.files import write_whole
+    from isotorque.runs.experiment import DATABASE
     from learning.recordings.recording_reader import RecordingReader
     from learning.relations.candidate_maps import judge_candidates
     from learning.relations.relation_learning import learn_relations

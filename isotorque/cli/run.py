@@ -42,11 +42,11 @@ def run(
 
     The same command resumes a run that was stopped.
     """
-    from isotorque.cli.files import output_directory
     from isotorque.cli.progress import progress_bars
-    from isotorque.experiment import run_experiment, save_run_model
-    from isotorque.judgement import judge_run
-    from isotorque.run_options import ArmOptions, RunOptions, default_learner, default_samples
+    from isotorque.files import output_directory
+    from isotorque.runs.experiment import run_experiment, save_run_model
+    from isotorque.runs.judgement import judge_run
+    from isotorque.runs.run_options import ArmOptions, RunOptions, default_learner, default_samples
     from learning.exploration.by_name import DIRECTIONS
     from verify.report import write_report
 

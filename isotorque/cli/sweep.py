@@ -35,8 +35,8 @@ def sweep(
     The same command goes on with what was stopped; runs added to the table are added.
     """
     from isotorque.cli.progress import progress_bars
-    from isotorque.sweep import sweep as perform
-    from isotorque.sweep_table import read_sweep
+    from isotorque.sweeps.sweep import sweep as perform
+    from isotorque.sweeps.sweep_table import read_sweep
 
     runs = read_sweep(table)
     with progress_bars(quiet) as progress:

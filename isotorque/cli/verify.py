@@ -50,7 +50,7 @@ def verify(
     verdicts = verify_path(what, loaded, gravity, tolerance)
     passed = all(verdict.passed for verdict in verdicts)
     if report is not None:
-        from isotorque.cli.files import write_whole
+        from isotorque.files import write_whole
         from verify.report import verdicts_page
 
         write_whole(report, verdicts_page(f"{what.name} against {gravity.name}", verdicts))

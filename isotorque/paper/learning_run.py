@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.paper.measured import rmse
-from isotorque.paper_targets import paper_targets
 from learning.exploration.step import ExplorationStep
 from learning.exploration.strategies import (
     Exploration,
@@ -24,6 +23,7 @@ from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from symbolic.robots import Robot
 from symbolic.symmetries import primary_symmetries
+from verify.paper_targets import paper_targets
 from verify.stability import has_stable_image
 from verify.targets import dense_targets
 

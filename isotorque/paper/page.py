@@ -11,8 +11,8 @@ from pathlib import Path
 import jinja2
 from markupsafe import Markup
 
-from isotorque.cli.files import output_directory, write_whole
 from isotorque.cli.output import plain
+from isotorque.files import output_directory, write_whole
 from isotorque.paper import published
 from isotorque.paper.pictures_configurations import (
     arm_pictures,

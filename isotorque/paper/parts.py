@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from isotorque.cli.files import output_directory, write_whole
+from isotorque.files import output_directory, write_whole
 from learning.recordings.run_info import software_versions
 from symbolic.errors import InputError
 

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from isotorque.cli.files import output_directory
+from isotorque.files import output_directory
 from isotorque.paper.experiments import experiments_of
 from isotorque.paper.items import ITEMS
 from isotorque.paper.measured import Experiment

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
-from isotorque.lattice_learning import learn_from_lattice
-from isotorque.run_options import ArmOptions, RunOptions
+from isotorque.runs.lattice_learning import learn_from_lattice
+from isotorque.runs.run_options import ArmOptions, RunOptions
 from learning.learners.by_name import LEARNERS
 from learning.recordings.recording_reader import RecordingReader
 from symbolic.gravity import GravityModel

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
-from isotorque.experiment import run_experiment
-from isotorque.run_options import ArmOptions, RunOptions
+from isotorque.runs.experiment import run_experiment
+from isotorque.runs.run_options import ArmOptions, RunOptions
 from symbolic.errors import InputError
 from symbolic.robots import load_robot
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from isotorque.run_options import ArmOptions, RunOptions
+from isotorque.runs.run_options import ArmOptions, RunOptions
 from symbolic.errors import InputError
 from symbolic.robots import load_robot
 

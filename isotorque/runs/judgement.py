@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.experiment import RunOutcome
-from isotorque.paper_targets import paper_targets
+from isotorque.runs.experiment import RunOutcome
 from learning.arm import OutcomeKind
 from learning.learners.by_name import EQUIVARIANT_LEARNERS
 from learning.recordings.run_info import software_versions
@@ -21,6 +20,7 @@ from verify.figures.learning_curves import LearningCurve
 from verify.figures.planar_links import planar_links
 from verify.learned_symmetries import completeness, judge_relations, judge_symmetries
 from verify.models import ModelJudgement, TargetResult, verify_model
+from verify.paper_targets import paper_targets
 from verify.run_parts import StaticTorqueReport
 from verify.run_report import LevelSetReport, RunReport, RunSetup, Stage, SymmetryReport
 from verify.run_summary import (
@@ -51,7 +51,7 @@ def judge_run(run: RunOutcome) -> RunReport:
     Parameters
     ----------
     run
-        From `isotorque.experiment.run_experiment`.
+        From `isotorque.runs.experiment.run_experiment`.
 
     Returns
     -------

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from isotorque.experiment import RunOutcome, save_learner
-from isotorque.learning_curve import CurvePoint
+from isotorque.runs.experiment import RunOutcome, save_learner
+from isotorque.runs.learning_curve import CurvePoint
 from symbolic.gravity import GravityModel
 from symbolic.robots import Robot
 from verify.models import verify_model

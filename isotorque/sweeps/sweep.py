@@ -14,12 +14,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from threadpoolctl import threadpool_limits
 
-from isotorque.cli.files import output_directory, write_whole
-from isotorque.experiment import run_experiment
+from isotorque.files import output_directory, write_whole
 from isotorque.paper.parts import Parts
 from isotorque.parallel import in_processes, on_cluster
-from isotorque.run_options import ArmOptions, RunOptions
-from isotorque.sweep_table import SweepRun
+from isotorque.runs.experiment import run_experiment
+from isotorque.runs.run_options import ArmOptions, RunOptions
+from isotorque.sweeps.sweep_table import SweepRun
 from learning.recordings.run_info import software_versions
 from verify.figures.learning_curves import LearningCurve, curve_panels
 from verify.figures.style import save_figure

@@ -7,14 +7,14 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from isotorque.run_options import (
+from isotorque.runs.run_options import (
     LATTICE,
     ArmOptions,
     RunOptions,
     default_learner,
     default_samples,
 )
-from isotorque.stages import recorded_discovery
+from isotorque.runs.stages import recorded_discovery
 from learning.physics import PhysicsMode
 
 

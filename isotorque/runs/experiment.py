@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning_curve import CurvePoint, DenseTest, curve_counts
-from isotorque.run_options import LATTICE, RunOptions
+from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
+from isotorque.runs.run_options import LATTICE, RunOptions
+from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.single_thread import single_thread
-from isotorque.stages import DATABASE, random_generator, run_info, simulated_arm
 from learning.arm import OutcomeKind
 from learning.exploration.by_name import DIRECTIONS, LED
 from learning.exploration.led_arm import LedArm

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.experiment import (
+from isotorque.runs.experiment import (
     LEARNING,
     Progress,
     RunOutcome,
     discover_symmetries,
 )
-from isotorque.learned_model import LearnedModel, missing_symmetries
-from isotorque.learning_curve import CurvePoint, DenseTest, curve_counts
-from isotorque.run_options import RunOptions
+from isotorque.runs.learned_model import LearnedModel, missing_symmetries
+from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
+from isotorque.runs.run_options import RunOptions
+from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.single_thread import single_thread
-from isotorque.stages import DATABASE, random_generator, run_info, simulated_arm
 from learning.learners.by_name import ONLINE_LEARNERS, LearningTask, learner_by_name
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording

@@ -5,10 +5,10 @@ import json
 
 import pytest
 
-from isotorque import sweep as sweep_module
 from isotorque.cli.main import status
-from isotorque.sweep import COLUMNS, sweep
-from isotorque.sweep_table import read_sweep
+from isotorque.sweeps import sweep as sweep_module
+from isotorque.sweeps.sweep import COLUMNS, sweep
+from isotorque.sweeps.sweep_table import read_sweep
 from symbolic.errors import InputError
 
 LEARNER = "recursive-least-squares"

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from isotorque.run_options import ArmOptions
+from isotorque.runs.run_options import ArmOptions
 from learning.physics import MeasurementNoise, PhysicsMode
 from learning.recordings.recording_reader import RecordingReader
 from learning.recordings.run_info import RunInfo

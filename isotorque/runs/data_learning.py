@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.data_relations import RelationsOfData
-from isotorque.data_remarks import analytic_remarks, outlier_remarks
-from isotorque.experiment import Progress
-from isotorque.lattice_learning import fitted_with_curve
-from isotorque.learned_model import LearnedModel
-from isotorque.learning_curve import DenseTest
-from isotorque.run_options import check_symmetries
+from isotorque.runs.data_relations import RelationsOfData
+from isotorque.runs.data_remarks import analytic_remarks, outlier_remarks
+from isotorque.runs.experiment import Progress
+from isotorque.runs.lattice_learning import fitted_with_curve
+from isotorque.runs.learned_model import LearnedModel
+from isotorque.runs.learning_curve import DenseTest
+from isotorque.runs.run_options import check_symmetries
+from isotorque.runs.stages import DATABASE
 from isotorque.single_thread import single_thread
-from isotorque.stages import DATABASE
 from learning.held_out import HeldOut
 from learning.learners.by_name import LearningTask, check_learner
 from learning.recordings.csv_data import StaticSamples, read_csv

@@ -1,0 +1,1 @@
+"""Robots x learners x seeds from one table."""
