@@ -22,7 +22,7 @@ from symbolic.trigonometric import TrigonometricPolynomial
 Array = NDArray[np.float64]
 Frequencies = NDArray[np.int64]
 
-ROUNDING = 1e-12  # of the largest torque: residuals below it are arithmetic, not noise
+ROUNDING = 1e-9  # of the largest torque: residuals below it are where a motion ended, not noise
 NOISE_RATIOS = (0.01, 0.1, 1.0, 10.0)  # torque noise over angle noise times stiffness
 
 
