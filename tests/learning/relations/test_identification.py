@@ -125,7 +125,7 @@ def test_an_arm_with_offset_masses_gets_its_own_smaller_group():
 
 def test_where_motions_ended_is_not_noise():
     # settled samples are off by next to nothing, but where the arm is soft, and all one way
-    potential = known_potential("2r")
+    potential, _ = known_potential("2r")
     for seed in range(20):
         phase = np.random.default_rng(seed).uniform(-np.pi / 2 - 1.4, -np.pi / 2 + 1.4, (100, 2))
         q = np.stack([phase[:, 0], phase[:, 1] - phase[:, 0]], axis=1)
