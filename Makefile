@@ -26,7 +26,7 @@ demo: $(VENV)/.installed-$(EXTRAS) ## derive, discover, learn and judge the 2R a
 test: $(VENV)/.installed-$(EXTRAS) ## run the tests (under 8 minutes on 2 cores)
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
-test-slow: $(VENV)/.installed-test,robots,bench ## run the slow tests too
+test-slow: $(VENV)/.installed-test,robots,bench,cluster ## run the slow tests too
 	$(BIN)/python -m pytest -n 2 --dist worksteal --slow -m slow --durations 10
 
 lint: $(VENV)/.installed-test,lint ## style, types and import contracts

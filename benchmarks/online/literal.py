@@ -25,14 +25,14 @@ def literal_rows(options: argparse.Namespace) -> Iterator[Row]:
     plan = Plan(54_000, 18_000, SETS)
     runs = all_seeds(
         options.store, "literal", options.long_seeds,
-        lambda seed: scheme_run(truth, literal, LITERAL, plan, seed),
+        lambda seed: scheme_run(truth, literal, LITERAL, plan, seed, bold=True),
     )  # fmt: skip
     yield from _rows(runs, "at 54,000 samples", "0.0053 Nm", 0.0061)
     if options.long:
         long = Plan(300_000, 100_000, SETS)
         runs = all_seeds(
             options.store, "literal-long", 1,
-            lambda seed: scheme_run(truth, literal, LITERAL, long, seed),
+            lambda seed: scheme_run(truth, literal, LITERAL, long, seed, bold=True),
         )  # fmt: skip
         yield from _rows(runs, "at 300,000 samples", "0.0024 Nm", 0.003)
 
@@ -61,6 +61,7 @@ def mode_rows(options: argparse.Namespace) -> Iterator[Row]:
 
 def _rows(runs: list[Run], when: str, paper: str, limit: float) -> Iterator[Row]:
     seeds = f", {len(runs)} seeds" if len(runs) > 1 else ", one seed"
+    seeds += f", {100 * statistics.median(run.failed for run in runs):.1f} % of torques failed"
     for name in SETS:
         errors = last_errors(runs, name)
         yield Row(

@@ -49,6 +49,11 @@ class Run:
             first = samples
         return first
 
+    @property
+    def failed(self) -> float:
+        """Share of the commanded torques that the arm did not settle under."""
+        return 1.0 - self.counts.settled / self.counts.commands
+
     def last(self, name: str) -> float:
         """Error at the end [N m]."""
         return self.curve[name][-1][1]
@@ -82,14 +87,18 @@ def scheme_run(
     *,
     noise: MeasurementNoise | None = None,
     physics: str = "open_loop",
+    bold: bool = False,
 ) -> Run:
-    """Discover symmetries and static torques, explore, learn; nothing is given."""
+    """Discover symmetries and static torques, explore, learn; nothing is given.
+
+    A bold run also admits the torques of configurations that discovery passed by.
+    """
     arm = SimulatedArm(truth.robot, physics, noise=noise, rng=np.random.default_rng(seed + 1000))
     scheme = Scheme(
         arm,
         np.random.default_rng(seed),
         make,
-        SchemeSettings(samples=plan.samples, exploration=settings),
+        SchemeSettings(samples=plan.samples, exploration=settings, from_trajectories=bold),
     )
     for _ in scheme.discover():
         pass
