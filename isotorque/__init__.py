@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from learning.arm import Settled as Settled
     from learning.arm import TimedOut as TimedOut
     from learning.discovery import discover as discover
+    from learning.export.c_export import c_source as c_source
+    from learning.export.casadi_export import casadi_function as casadi_function
+    from learning.export.from_learner import torque_form as torque_form
     from learning.held_out import held_out as held_out
     from learning.learners.gaussian_process import (
         SymmetricGaussianProcess as SymmetricGaussianProcess,
@@ -42,8 +45,16 @@ if TYPE_CHECKING:
     from learning.recordings.csv_data import StaticSamples as StaticSamples
     from learning.recordings.csv_data import read_csv as read_csv
     from learning.recordings.recording import Recording as Recording
+    from learning.relations.broken_symmetries import SupportedGroup as SupportedGroup
+    from learning.relations.broken_symmetries import supported_group as supported_group
+    from learning.relations.candidate_maps import judge_candidates as judge_candidates
     from learning.relations.identification import identify as identify
     from learning.relations.relation_learning import learn_relations as learn_relations
+    from learning.sampling.lattice import lattice_samples as lattice_samples
+    from learning.sampling.optimal_design import Design as Design
+    from learning.sampling.optimal_design import d_optimal as d_optimal
+    from learning.sampling.optimal_design import least_variance as least_variance
+    from learning.sampling.sampling_region import SamplingRegion as SamplingRegion
     from learning.scheme import Scheme as Scheme
     from learning.simulation.simulated_arm import SimulatedArm as SimulatedArm
     from learning.static_torques.static_torque_set import StaticTorqueSet as StaticTorqueSet
@@ -62,12 +73,14 @@ if TYPE_CHECKING:
     from verify.models import verify_model as verify_model
     from verify.relation_files import load_relations as load_relations
     from verify.relations import verify_relation as verify_relation
+    from verify.static_torques import judge_static_torques as judge_static_torques
     from verify.verdict import Verdict as Verdict
 
 __version__ = "0.1.0"
 
 _HOME = {
     "Arm": "learning.arm",
+    "Design": "learning.sampling.optimal_design",
     "EquivariantTrigonometric": "learning.learners.trigonometric",
     "FeedForwardNetwork": "learning.learners.network",
     "FundamentalDomain": "symbolic.domain",
@@ -82,6 +95,7 @@ _HOME = {
     "Recording": "learning.recordings.recording",
     "RecursiveLeastSquares": "learning.learners.recursive_least_squares",
     "Robot": "symbolic.robots",
+    "SamplingRegion": "learning.sampling.sampling_region",
     "SavedModel": "learning.model_files",
     "Scheme": "learning.scheme",
     "Settled": "learning.arm",
@@ -89,16 +103,24 @@ _HOME = {
     "StaticRegressor": "learning.learners.static_regressor",
     "StaticSamples": "learning.recordings.csv_data",
     "StaticTorqueSet": "learning.static_torques.static_torque_set",
+    "SupportedGroup": "learning.relations.broken_symmetries",
     "SymmetricGaussianProcess": "learning.learners.gaussian_process",
     "SymmetryGroup": "symbolic.relations",
     "SymmetryRelation": "symbolic.relations",
     "TimedOut": "learning.arm",
     "TrigonometricPolynomial": "symbolic.trigonometric",
     "Verdict": "verify.verdict",
+    "c_source": "learning.export.c_export",
+    "casadi_function": "learning.export.casadi_export",
+    "d_optimal": "learning.sampling.optimal_design",
     "discover": "learning.discovery",
     "held_out": "learning.held_out",
     "identify": "learning.relations.identification",
+    "judge_candidates": "learning.relations.candidate_maps",
+    "judge_static_torques": "verify.static_torques",
+    "lattice_samples": "learning.sampling.lattice",
     "learn_relations": "learning.relations.relation_learning",
+    "least_variance": "learning.sampling.optimal_design",
     "load_model": "learning.model_files",
     "load_relations": "verify.relation_files",
     "load_robot": "symbolic.robots",
@@ -107,6 +129,8 @@ _HOME = {
     "primary_symmetries": "symbolic.symmetries",
     "read_csv": "learning.recordings.csv_data",
     "save_model": "learning.model_files",
+    "supported_group": "learning.relations.broken_symmetries",
+    "torque_form": "learning.export.from_learner",
     "verify_model": "verify.models",
     "verify_relation": "verify.relations",
 }

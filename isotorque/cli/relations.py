@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,11 +12,9 @@ from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, plain, row, say
 
 if TYPE_CHECKING:
-    from learning.recordings.recording_reader import RecordingReader, SettledSamples
     from learning.relations.candidate_maps import JudgedCandidate
     from learning.relations.errors_in_variables import MeasurementNoise
     from learning.relations.learned_symmetries import LearnedSymmetries
-    from symbolic.relations import SymmetryRelation
 
 PHASE = "discovery"
 
@@ -66,6 +63,12 @@ def relations(
 
     from isotorque.files import write_whole
     from isotorque.runs.experiment import DATABASE
+    from isotorque.runs.recorded_relations import (
+        claimed_relations,
+        judged_entry,
+        recorded_limits,
+        relations_found,
+    )
     from learning.recordings.recording_reader import RecordingReader
     from learning.relations.candidate_maps import judge_candidates
     from learning.relations.relation_learning import learn_relations
@@ -75,14 +78,14 @@ def relations(
         samples, joints = reader.samples(phase=PHASE), reader.joint_names
         if not len(samples.q):  # not made by `discover`: all that ever rested
             samples = reader.samples()
-        claims = () if candidates is None else _claims(candidates, reader)
-        limits = _limits(reader)
+        claims = () if candidates is None else claimed_relations(candidates, reader)
+        limits = recorded_limits(reader)
     judged = judge_candidates(claims, samples.q, samples.tau, noise=noise)
     learned = learn_relations(samples.q, samples.tau, noise=noise)
-    document = _document(learned, samples, joints, limits)
+    document = relations_found(learned, samples, joints, limits)
     write_whole(run / "relations.json", text.dumps(plain(document), indent=1) + "\n")
     if candidates is not None:
-        entries = [_entry(found) for found in judged]
+        entries = [judged_entry(found) for found in judged]
         document["candidates"] = {"source": candidates, "judged": entries}
     if json:
         emit_json(document)
@@ -107,97 +110,6 @@ def _noise(angle: float | None, torque: float | None) -> MeasurementNoise | None
         found = "0 everywhere"
         raise InputError("command line", "noise", found, "one level > 0, or neither option")
     return MeasurementNoise(angle or 0.0, torque or 0.0)
-
-
-def _claims(source: str, reader: RecordingReader) -> tuple[SymmetryRelation, ...]:
-    """Relations to test: those of a file, or those that a robot's geometry implies."""
-    from symbolic.errors import InputError
-    from symbolic.gravity import GravityModel
-    from symbolic.robots import load_robot
-    from symbolic.symmetries import primary_symmetries
-    from verify.relation_files import load_relations
-
-    if source.endswith(".json"):
-        return load_relations(source, joint_names=reader.joint_names).relations
-    robot = load_robot(reader.robot if source == "exact" else source)
-    if source == "exact" and robot.digest != reader.digest:
-        found = f"{robot.name} (digest {robot.digest[:12]})"
-        accepted = f"the file of the robot recorded (digest {reader.digest[:12]})"
-        raise InputError("command line", "--candidates exact", found, accepted)
-    return tuple(primary_symmetries(GravityModel(robot).potential))
-
-
-def _limits(reader: RecordingReader) -> list[list[float]] | None:
-    """Joint limits of the arm that was recorded, infinite where it has none; None if unknown."""
-    for part in reader.parts:
-        recorded = part.info.options.get("arm", {}).get("limits")
-        if recorded is not None:
-            ends = (-math.inf, math.inf)
-            return [
-                [end if x is None else x for x, end in zip(pair, ends, strict=True)]
-                for pair in recorded
-            ]
-    return None
-
-
-def _document(
-    learned: LearnedSymmetries,
-    samples: SettledSamples,
-    joints: Sequence[str],
-    limits: list[list[float]] | None,
-) -> dict[str, Any]:
-    from learning.relations.executable import is_executable
-    from verify.relation_files import relations_document
-
-    extra = [
-        {
-            "known": str(entry.known),
-            "executable": None if limits is None else is_executable(entry.relation, limits),
-            "standard_error": plain(entry.standard_error),
-            "support": entry.support,
-            "p_value": plain(entry.p_value),
-            "log10_false_alarms": plain(entry.log10_false_alarms),
-            "snapped": entry.snapped,
-            "regression": _regression(entry.regression),
-        }
-        for entry in learned.relations
-    ]
-    return relations_document(learned.group, joints, extra=extra) | {
-        "method": learned.method,
-        "missing": learned.missing,
-        "samples": len(samples.q),
-        "torques": int(samples.torque_groups().max(initial=-1)) + 1,
-        "secondary_pairs": [
-            {"Y": plain(pairs.Y), "pairs": len(pairs), "torques": len(set(pairs.torque_index))}
-            for pairs in learned.rejected
-        ],
-        "contradicted": [
-            {"A": plain(r.A), "d": plain(r.d), "Y": plain(r.Y), "support": entry.support}
-            for entry in learned.contradicted
-            for r in [entry.relation]
-        ],
-    }
-
-
-def _regression(found: Any) -> dict[str, Any] | None:
-    """Return the free regression of a relation: M q_r + N q_s = d with real numbers."""
-    if found is None:
-        return None
-    names = ("M", "N", "d", "A_error", "d_error", "pairs")
-    return {name: plain(getattr(found, name)) for name in names}
-
-
-def _entry(found: JudgedCandidate) -> dict[str, Any]:
-    relation = found.relation
-    return {
-        "A": relation.A,
-        "d": relation.d,
-        "Y": relation.Y,
-        "judgement": str(found.judgement),
-        "p_value": found.p_value,
-        "bound": relation.bound,
-        "reason": found.reason,
-    }
 
 
 def _print_learned(learned: LearnedSymmetries, document: dict[str, Any]) -> None:

@@ -96,7 +96,7 @@ def _setup(run: RunOutcome) -> RunSetup:
         joint_names=run.robot.joint_names,
         physics=options.arm.physics,
         engine=options.arm.engine,
-        strategy="constrained direction sampling",
+        strategy=options.strategy.replace("-", " ") + " (the arm led)" * options.is_led,
         learner=options.learner,
         symmetries=options.symmetries,
         seed=options.arm.seed,

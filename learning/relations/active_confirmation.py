@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.exploration.pull_back import PullBacks
+from learning.relations.pull_back import PullBacks
 from learning.relations.candidate_group import CandidateGroup
 from learning.relations.errors_in_variables import stiffness_matrices, torque_features
 from learning.relations.learned_symmetries import LearnedSymmetries

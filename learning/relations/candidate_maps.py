@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.exploration.pull_back import PullBacks
+from learning.relations.pull_back import PullBacks
 from learning.relations.candidate_group import CandidateGroup
 from learning.relations.errors_in_variables import MeasurementNoise, Undetermined
 from learning.relations.group_fit import torque_uncertainty

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.exploration.pull_back import PullBacks
+from learning.relations.pull_back import PullBacks
 from learning.relations.candidate_group import CandidateGroup, Ints
 from learning.relations.potential_fit import FittedPotential, tail_probability
 from symbolic.relations import wrap

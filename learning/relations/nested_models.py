@@ -83,7 +83,7 @@ def scales(
     -----
     Slopes come from a first fit, weighted by what follows from an unweighted one.
     """
-    floor = ROUNDING * max(float(np.abs(torques).max(initial=0.0)), 1e-300)
+    floor = ROUNDING * max(float(np.abs(torques).max(initial=0.0)), 1e-100)  # its square is > 0
     pairs = list(zip(functions, torques.T, strict=True))
     slopes = np.array([_slopes(f, tau, np.ones(len(tau))) for f, tau in pairs])
     deviations = slopes

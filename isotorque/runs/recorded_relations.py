@@ -1,0 +1,102 @@
+"""The relations of a recording as a document, and relations from elsewhere to hold against it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from learning.recordings.recording_reader import RecordingReader, SettledSamples
+from learning.relations.candidate_maps import JudgedCandidate
+from learning.relations.executable import is_executable
+from learning.relations.learned_symmetries import LearnedSymmetries
+from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
+from symbolic.relations import SymmetryRelation
+from symbolic.robots import load_robot
+from symbolic.symmetries import primary_symmetries
+from verify.relation_files import load_relations, relations_document
+
+
+def claimed_relations(source: str, reader: RecordingReader) -> tuple[SymmetryRelation, ...]:
+    """Relations to test: those of a file, or those that a robot's geometry implies."""
+    if source.endswith(".json"):
+        return load_relations(source, joint_names=reader.joint_names).relations
+    robot = load_robot(reader.robot if source == "exact" else source)
+    if source == "exact" and robot.digest != reader.digest:
+        found = f"{robot.name} (digest {robot.digest[:12]})"
+        accepted = f"the file of the robot recorded (digest {reader.digest[:12]})"
+        raise InputError("command line", "--candidates exact", found, accepted)
+    return tuple(primary_symmetries(GravityModel(robot).potential))
+
+
+def recorded_limits(reader: RecordingReader) -> list[list[float]] | None:
+    """Joint limits of the arm that was recorded, infinite where it has none; None if unknown."""
+    for part in reader.parts:
+        recorded = part.info.options.get("arm", {}).get("limits")
+        if recorded is not None:
+            ends = (-math.inf, math.inf)
+            return [
+                [end if x is None else x for x, end in zip(pair, ends, strict=True)]
+                for pair in recorded
+            ]
+    return None
+
+
+def relations_found(
+    learned: LearnedSymmetries,
+    samples: SettledSamples,
+    joints: Sequence[str],
+    limits: list[list[float]] | None,
+) -> dict[str, Any]:
+    """The learned relations as the document that `isotorque relations` writes."""
+    extra = [
+        {
+            "known": str(entry.known),
+            "executable": None if limits is None else is_executable(entry.relation, limits),
+            "standard_error": entry.standard_error,
+            "support": entry.support,
+            "p_value": entry.p_value,
+            "log10_false_alarms": entry.log10_false_alarms,
+            "snapped": entry.snapped,
+            "regression": _regression(entry.regression),
+        }
+        for entry in learned.relations
+    ]
+    return relations_document(learned.group, joints, extra=extra) | {
+        "method": learned.method,
+        "missing": learned.missing,
+        "samples": len(samples.q),
+        "torques": int(samples.torque_groups().max(initial=-1)) + 1,
+        "secondary_pairs": [
+            {"Y": pairs.Y, "pairs": len(pairs), "torques": len(set(pairs.torque_index))}
+            for pairs in learned.rejected
+        ],
+        "contradicted": [
+            {"A": r.A, "d": r.d, "Y": r.Y, "support": entry.support}
+            for entry in learned.contradicted
+            for r in [entry.relation]
+        ],
+    }
+
+
+def _regression(found: Any) -> dict[str, Any] | None:
+    """Return the free regression of a relation: M q_r + N q_s = d with real numbers."""
+    if found is None:
+        return None
+    names = ("M", "N", "d", "A_error", "d_error", "pairs")
+    return {name: getattr(found, name) for name in names}
+
+
+def judged_entry(found: JudgedCandidate) -> dict[str, Any]:
+    """What the samples say of a candidate, as an object of the document."""
+    relation = found.relation
+    return {
+        "A": relation.A,
+        "d": relation.d,
+        "Y": relation.Y,
+        "judgement": str(found.judgement),
+        "p_value": found.p_value,
+        "bound": relation.bound,
+        "reason": found.reason,
+    }
