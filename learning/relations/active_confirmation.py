@@ -8,11 +8,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.relations.pull_back import PullBacks
 from learning.relations.candidate_group import CandidateGroup
 from learning.relations.errors_in_variables import stiffness_matrices, torque_features
 from learning.relations.learned_symmetries import LearnedSymmetries
 from learning.relations.potential_fit import FittedPotential
+from learning.relations.pull_back import PullBacks
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
 

@@ -9,12 +9,12 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.relations.pull_back import PullBacks
 from learning.relations.candidate_group import CandidateGroup
 from learning.relations.errors_in_variables import MeasurementNoise, Undetermined
 from learning.relations.group_fit import torque_uncertainty
 from learning.relations.identification import BOUND_DEVIATIONS, LARGEST_ERROR, SIGNIFICANCE
 from learning.relations.potential_fit import FittedPotential, quantile, tail_probability
+from learning.relations.pull_back import PullBacks
 from learning.relations.samples import static_samples
 from learning.relations.silent_joints import fit_on_active_joints
 from learning.relations.wanted_samples import wanted_samples

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.relations.pull_back import PullBacks
 from learning.relations.candidate_group import CandidateGroup, Ints
 from learning.relations.potential_fit import FittedPotential, tail_probability
+from learning.relations.pull_back import PullBacks
 from symbolic.relations import wrap
 
 Array = NDArray[np.float64]
