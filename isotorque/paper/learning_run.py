@@ -147,7 +147,9 @@ def open_loop_run(
     needed = run.group.order if n_min is None else n_min
     scheme = Scheme(
         SimulatedArm(robot), np.random.default_rng(seed), make,
-        SchemeSettings(samples=samples, exploration=settings, n_min=needed),
+        SchemeSettings(
+            samples=samples, exploration=settings, n_min=needed, from_trajectories=True
+        ),
     )  # fmt: skip
     run.motions = list(scheme.discover())
     steps = scheme.learn()
