@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from learning.export.copies import Copies
 from learning.export.folded_copy import FoldedCopy
@@ -24,6 +25,7 @@ from learning.learners.symmetric_kernel import distinct_rows
 from learning.learners.trigonometric import EquivariantTrigonometric
 from symbolic.errors import InputError
 
+Array = NDArray[np.float64]
 MOST_JOINTS = 10  # 3^n torques make the waves of a static regressor
 
 
@@ -95,15 +97,14 @@ def _network(learner: FeedForwardNetwork) -> TanhUnits:
     return TanhUnits(copies, periodic, hidden, output * arrays["scale"][:, None])
 
 
-def _gaussian_process(learner: SymmetricGaussianProcess) -> Kernels:
+def _gaussian_process(learner: SymmetricGaussianProcess) -> Kernels | Waves:
     arrays, group = learner.to_arrays(), learner._coordinates
-    lengths, weights = [], []
-    for process in learner.processes_:
-        found = process.kernel_.get_params()
-        periodic = next(v for k, v in found.items() if k.endswith("length_scale"))
-        amplitude = next(v for k, v in found.items() if k.endswith("constant_value"))
-        lengths.append(float(periodic))
-        weights.append(amplitude * process.alpha_.ravel())
+    outputs, scale = range(learner.n_outputs_), arrays["scale"]
+    waves = _waves_of_means(learner, scale)
+    if all(found is not None for found in learner.waves_):
+        return waves
+    sums = [learner.covariance_sum(j) for j in outputs]
+    alive = [learner.waves_[j] is None for j in outputs]
     rows, shares = distinct_rows(group.A_sat)
     radii = np.sqrt(shares)
     phase = arrays["q"] @ group.basis.T @ rows.T
@@ -113,9 +114,27 @@ def _gaussian_process(learner: SymmetricGaussianProcess) -> Kernels:
         rows,
         radii,
         centres,
-        np.array(weights).T * arrays["scale"],
-        np.array(lengths),
+        np.where(alive, np.array([weights for weights, _ in sums]).T * scale, 0.0),
+        np.array([length for _, length in sums]),
+        waves,
     )
+
+
+def _waves_of_means(learner: SymmetricGaussianProcess, scale: Array) -> Waves:
+    """The joints whose means are waves, on the frequencies of all of them."""
+    joints, outputs = learner.n_features_in_, learner.n_outputs_
+    parts = [
+        (j, found.frequencies, found.cos, found.sin)
+        for j, found in enumerate(learner.waves_)
+        if found is not None
+    ]
+    rows = np.concatenate([np.zeros((0, joints), dtype=np.int64), *(k for _, k, _, _ in parts)])
+    k, member = np.unique(rows, axis=0, return_inverse=True)
+    cos, sin = np.zeros((2, len(k), outputs))
+    place = np.split(member.ravel(), np.cumsum([len(k) for _, k, _, _ in parts])[:-1])
+    for (j, _, a, b), at in zip(parts, place, strict=False):
+        cos[at, j], sin[at, j] = a * scale[j], b * scale[j]
+    return Waves(k, cos, sin).without_rounding()
 
 
 def _local_linear_map(learner: LocalLinearMap) -> LocalFunctions:

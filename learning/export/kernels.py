@@ -12,6 +12,7 @@ from learning.export.c_tables import Tables
 from learning.export.copies import Copies
 from learning.export.copy_arrays import copies_from_arrays, copies_to_arrays
 from learning.export.space import Space
+from learning.export.waves import Waves
 
 Array = NDArray[np.float64]
 
@@ -34,6 +35,8 @@ class Kernels:
         w [N m].
     lengths : (k,) array
         l [rad].
+    waves : Waves
+        What is added: means of long length scale (w = 0), as sums of covariances cancel there.
     """
 
     copies: Copies
@@ -42,11 +45,12 @@ class Kernels:
     centres: Array
     weights: Array
     lengths: Array
+    waves: Waves
 
     KIND: ClassVar[str] = "kernels"
     FORMULA: ClassVar[str] = (
         "tau_j = sum_i weights_ij sum over copies y of signs_j exp((x.centres_i - r) / lengths_j^2)"
-        ", x = [radii cos(rows y), radii sin(rows y)]"
+        ", x = [radii cos(rows y), radii sin(rows y)]; plus the waves"
     )
 
     @property
@@ -72,12 +76,11 @@ class Kernels:
             for j, length in enumerate(self.lengths):
                 value = space.exp(exponent / float(length) ** 2)
                 covariances[j] = covariances[j] + value @ signs[j : j + 1, :]
-        return space.above(
-            [
-                space.constant(self.weights[:, j][None]) @ column
-                for j, column in enumerate(covariances)
-            ]
-        )
+        summed = [
+            space.constant(self.weights[:, j][None]) @ column
+            for j, column in enumerate(covariances)
+        ]
+        return space.above(summed) + self.waves.torque(space, q)
 
     def c_source(self) -> str:
         """See `TorqueForm`."""
@@ -91,12 +94,14 @@ class Kernels:
         tables.add("CENTRE", self.centres)
         tables.add("WEIGHT", self.weights)
         copies = self.copies.c_source(tables)
-        return tables.source() + "\n" + copies + C_SOURCE
+        waves = self.waves.c_function(tables)
+        return tables.source() + "\n" + copies + waves + C_SOURCE
 
     def to_arrays(self) -> dict[str, NDArray]:
         """The tables by name."""
         own = ("rows", "radii", "centres", "weights", "lengths")
-        return copies_to_arrays(self.copies) | {name: getattr(self, name) for name in own}
+        tables = {name: getattr(self, name) for name in own}
+        return copies_to_arrays(self.copies) | tables | self.waves.to_arrays()
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray]) -> Kernels:
@@ -104,7 +109,8 @@ class Kernels:
         copies = copies_from_arrays(arrays)
         assert isinstance(copies, Copies)
         own = ("rows", "radii", "centres", "weights", "lengths")
-        return cls(copies, *(arrays[name] for name in own))
+        tables = {name: arrays[name] for name in own}
+        return cls(copies, **tables, waves=Waves.from_arrays(arrays))
 
 
 C_SOURCE = """
@@ -136,6 +142,7 @@ void isotorque_gravity(const double *q, double *tau)
         for (i = 0; i < JOINTS; i++)
             torque[i] += WEIGHT[c][i] * covariance[i];
     }
+    add_waves(q, torque);
     for (i = 0; i < JOINTS; i++)
         tau[i] = torque[i];
 }

@@ -55,14 +55,20 @@ class Waves:
     def c_source(self) -> str:
         """See `TorqueForm`."""
         tables = Tables()
-        tables.number("JOINTS", self.joints)
+        tables.number("JOINTS", self.outputs)
+        function = self.c_function(tables)
+        return tables.source() + "\n" + function + C_SOURCE
+
+    def c_function(self, tables: Tables) -> str:
+        """C99 of ``add_waves(q, torque)``, its constants put into tables, where JOINTS is."""
         if not len(self.frequencies):
-            return tables.source() + C_ZERO
+            return C_NO_WAVES
+        tables.number("INPUTS", self.joints)
         tables.number("WAVES", len(self.frequencies))
         tables.add("FREQUENCY", self.frequencies)
         tables.add("COS", self.cos)
         tables.add("SIN", self.sin)
-        return tables.source() + C_SOURCE
+        return C_WAVES
 
     def to_arrays(self) -> dict[str, NDArray]:
         """The tables by name."""
@@ -115,30 +121,37 @@ class Waves:
 NEGLIGIBLE = 1e-16
 """Coefficients below it, relative to the largest, are rounding."""
 
-C_ZERO = """
-void isotorque_gravity(const double *q, double *tau)
+C_NO_WAVES = """
+static void add_waves(const double *q, double *torque)
 {
-    int i;
     (void)q;
-    for (i = 0; i < JOINTS; i++)
-        tau[i] = 0.0;
+    (void)torque;
 }
 """
 
-C_SOURCE = """
-void isotorque_gravity(const double *q, double *tau)
+C_WAVES = """
+static void add_waves(const double *q, double *torque)
 {
-    double torque[JOINTS] = {0.0}, phase, c, s;
+    double phase, c, s;
     int i, k;
     for (k = 0; k < WAVES; k++) {
         phase = 0.0;
-        for (i = 0; i < JOINTS; i++)
+        for (i = 0; i < INPUTS; i++)
             phase += FREQUENCY[k][i] * q[i];
         c = cos(phase);
         s = sin(phase);
         for (i = 0; i < JOINTS; i++)
             torque[i] += COS[k][i] * c + SIN[k][i] * s;
     }
+}
+"""
+
+C_SOURCE = """
+void isotorque_gravity(const double *q, double *tau)
+{
+    double torque[JOINTS] = {0.0};
+    int i;
+    add_waves(q, torque);
     for (i = 0; i < JOINTS; i++)
         tau[i] = torque[i];
 }

@@ -16,9 +16,11 @@ from sklearn.gaussian_process.kernels import ConstantKernel, Kernel, WhiteKernel
 
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.saved_learner import SavedLearner
+from learning.learners.smooth_process import smooth_mean
 from learning.learners.symmetric_kernel import SymmetrisedPeriodicKernel
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from symbolic.errors import InputError
+from symbolic.trigonometric import TrigonometricPolynomial
 
 Array = NDArray[np.float64]
 
@@ -26,6 +28,8 @@ Array = NDArray[np.float64]
 TOGETHER = 4_000_000
 #: Nugget, relative to the amplitude, that keeps noise-free covariances invertible.
 NUGGET = 1e-12
+#: Share of the torque that rounding may cost in a sum of covariances.
+LOSS = 1e-13
 #: Length scales [rad] from the best of which the search starts.
 LENGTHS = np.geomspace(0.25, 16.0, 13)
 
@@ -52,6 +56,9 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
     processes_ : list of GaussianProcessRegressor
         One for each joint, with hyperparameters of its own: the torque of a wrist is rougher
         than that of a shoulder, and one length scale for both fits neither.
+    waves_ : list of TrigonometricPolynomial or None
+        The same means (in units of the scale of the torques) as waves, where the sum of covariances
+        would cancel; None where it does not.
 
     Notes
     -----
@@ -134,8 +141,10 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
                 part = slice(i, i + together)
                 if return_std:
                     mean[part, joint], deviation[part, joint] = process.predict(q[part], True)
-                else:
+                elif self.waves_[joint] is None:
                     mean[part, joint] = process.predict(q[part])
+                if (waves := self.waves_[joint]) is not None:
+                    mean[part, joint] = waves.evaluate(q[part])
         result = [mean * self._scale, deviation * self._scale]
         if self._flat:
             result = [x[:, 0] for x in result]
@@ -143,7 +152,7 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
 
     def _condition(self, thetas: list[Array | None]) -> None:
         """Condition each process on the samples; hyperparameters are sought where not given."""
-        self.processes_ = []
+        self.processes_, self.waves_ = [], []
         for joint, theta in enumerate(thetas):
             kernel = self._kernel(joint)
             if theta is not None:
@@ -160,6 +169,37 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
                 warnings.simplefilter("ignore", ConvergenceWarning)
                 process.fit(self._q, self._torque[:, joint] / self._scale[joint])
             self.processes_.append(process)
+            self.waves_.append(self._smooth(joint))
+
+    def _smooth(self, joint: int) -> TrigonometricPolynomial | None:
+        """The mean of one joint as waves, where the sum of covariances loses too many digits."""
+        weights, length_scale = self.covariance_sum(joint)
+        lost = np.finfo(float).eps * self._coordinates.order * np.abs(weights).sum()
+        if lost <= LOSS:
+            return None
+        found = self.processes_[joint].kernel_
+        product, level = (
+            (found, 0.0) if self.noise is not None else (found.k1, found.k2.noise_level)
+        )
+        noise = (level + self.processes_[joint].alpha) / product.k1.constant_value + NUGGET
+        values = self._torque[:, joint] / self._scale[joint]
+        return smooth_mean(self._coordinates, joint, length_scale, noise, self._q, values)
+
+    def covariance_sum(self, joint: int) -> tuple[Array, float]:
+        """The mean of one joint as a sum of kernels.
+
+        Returns
+        -------
+        weights : (m,) array
+            What each sample's `SymmetrisedPeriodicKernel` is multiplied with, in units of the
+            scale of the torques.
+        length_scale : float
+            Of the kernel [rad].
+        """
+        process = self.processes_[joint]
+        product = process.kernel_ if self.noise is not None else process.kernel_.k1
+        weights = product.k1.constant_value * process.alpha_.ravel()
+        return weights, float(product.k2.k1.length_scale)
 
     def _kernel(self, joint: int) -> Kernel:
         bounds = "fixed" if self.length_scale is not None else (0.05, 50.0)

@@ -36,6 +36,9 @@ MAKERS = {
     "gaussian-process": lambda robot, group: SymmetricGaussianProcess(
         length_scale=2.0, group=group
     ),
+    # its length scales are sought, and are long
+    "smooth gaussian-process": lambda robot, group: SymmetricGaussianProcess(group=group),
+    "noisy gaussian-process": lambda robot, group: SymmetricGaussianProcess(None, group=group),
     "parametric": lambda robot, group: StaticRegressor(robot),
     "dictionary": lambda robot, group: DictionaryLearner(
         EquivariantTrigonometric(group=group), budget=30, group=group

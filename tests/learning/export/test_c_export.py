@@ -4,6 +4,7 @@ import pytest
 from learning.export.c_export import c_source
 from learning.export.from_learner import torque_form
 from learning.export.waves import Waves
+from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.network import FeedForwardNetwork
 from learning.learners.static_regressor import StaticRegressor
 from learning.learners.trigonometric import EquivariantTrigonometric
@@ -41,13 +42,17 @@ def test_compiled_c_equals_predict_on_three_joints(name, tmp_path):
 @needs_cc
 @pytest.mark.parametrize("robot", ["ur5", "panda"])
 def test_large_arms(robot, tmp_path):
+    """The processes have joints whose mean is waves, and others."""
     q, torque = samples(robot, 150)
+    few = slice(8 if robot == "ur5" else 60)
     group = primary_symmetries(GravityModel(load_robot(robot)).potential)
     for i, learner in enumerate(
         [
             StaticRegressor(robot).fit(q, torque),
             FeedForwardNetwork(6, group=group, **QUICK).fit(q, torque),
             EquivariantTrigonometric(group=group).fit(q, torque),
+            SymmetricGaussianProcess(group=group).fit(q[few], torque[few]),
+            SymmetricGaussianProcess(None, group=group).fit(q[few], torque[few]),
         ]
     ):
         folder = tmp_path / str(i)
