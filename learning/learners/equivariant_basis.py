@@ -6,6 +6,7 @@ import itertools
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csc_array
 
 from learning.symmetry_use import SymmetryCoordinates
 
@@ -58,6 +59,13 @@ def _independent(rows: Array) -> list[int]:
 
 
 def torque_basis(coordinates: SymmetryCoordinates, frequencies: Integers, signs: Array) -> Array:
+    """`sparse_torque_basis` as an ordinary array."""
+    return np.asarray(sparse_torque_basis(coordinates, frequencies, signs).toarray())
+
+
+def sparse_torque_basis(
+    coordinates: SymmetryCoordinates, frequencies: Integers, signs: Array
+) -> csc_array:
     """Coefficients of functions with ``f(A y + d) = s f(y)`` for every relation.
 
     Parameters
@@ -71,7 +79,7 @@ def torque_basis(coordinates: SymmetryCoordinates, frequencies: Integers, signs:
 
     Returns
     -------
-    (2 m, p) array
+    (2 m, p) sparse array
         Orthonormal columns: all (a, then b) that are possible.
 
     Notes
@@ -140,19 +148,21 @@ def potential_basis(coordinates: SymmetryCoordinates, frequencies: Integers) -> 
                     target[g, i] = index[row]
                 elif flip in index:
                     target[g, i], mirrored[g, i] = index[flip], -1.0
-    return _range_by_orbit(target, mirrored, phase, signs)
+    return np.asarray(_range_by_orbit(target, mirrored, phase, signs).toarray())
 
 
 def _range_by_orbit(
     target: NDArray[np.int64], mirrored: Array, phase: Array, signs: Array
-) -> Array:
-    """Coefficients that all relations leave alone.
+) -> csc_array:
+    """Coefficients (2 m, p) that all relations leave alone, sparse.
 
     Relation g takes ``a cos x + b sin x`` of frequency i to ``sign (a cos(x' + phase) + ..)`` with
     x' = +-x of frequency ``target`` (minus where ``mirrored`` is -1; -1: none).
     """
     order, m = target.shape
-    columns: list[Array] = []
+    rows: list[Array] = []
+    values: list[Array] = []
+    starts = [0]
     waiting = np.ones(m, dtype=bool)
     absent = np.asarray((target < 0).any(axis=0))
     for start in range(m):
@@ -174,9 +184,11 @@ def _range_by_orbit(
                 average[to, size + j] += s * sn
                 average[size + to, j] -= s * mirror * sn
                 average[size + to, size + j] += s * mirror * c
-        left, values, _ = np.linalg.svd(average)
-        for column in left[:, values > 0.5].T:
-            full = np.zeros(2 * m)
-            full[members], full[m + members] = column[:size], column[size:]
-            columns.append(full)
-    return np.array(columns).T if columns else np.zeros((2 * m, 0))
+        left, kept, _ = np.linalg.svd(average)
+        for column in left[:, kept > 0.5].T:
+            rows.append(np.concatenate([members, m + members]))
+            values.append(column)
+            starts.append(starts[-1] + 2 * size)
+    if not rows:
+        return csc_array((2 * m, 0))
+    return csc_array((np.concatenate(values), np.concatenate(rows), starts), (2 * m, len(rows)))

@@ -164,25 +164,26 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
                 n_restarts_optimizer=self.restarts,
                 random_state=self.random_state,
             )
+            values = self._torque[:, joint] / self._scale[joint]
             with warnings.catch_warnings():
                 # A hyperparameter at its bound (a torque that is zero, say) is no failure.
                 warnings.simplefilter("ignore", ConvergenceWarning)
-                process.fit(self._q, self._torque[:, joint] / self._scale[joint])
+                process.fit(self._q, values)
             self.processes_.append(process)
-            self.waves_.append(self._smooth(joint))
+            self.waves_.append(self._smooth(joint, values) if self._lost(joint) > LOSS else None)
 
-    def _smooth(self, joint: int) -> TrigonometricPolynomial | None:
-        """The mean of one joint as waves, where the sum of covariances loses too many digits."""
-        weights, length_scale = self.covariance_sum(joint)
-        lost = np.finfo(float).eps * self._coordinates.order * np.abs(weights).sum()
-        if lost <= LOSS:
-            return None
-        found = self.processes_[joint].kernel_
-        product, level = (
-            (found, 0.0) if self.noise is not None else (found.k1, found.k2.noise_level)
-        )
-        noise = (level + self.processes_[joint].alpha) / product.k1.constant_value + NUGGET
-        values = self._torque[:, joint] / self._scale[joint]
+    def _lost(self, joint: int) -> float:
+        """What rounding may cost in the sum of covariances, in units of the torque's scale."""
+        weights, _ = self.covariance_sum(joint)
+        return float(np.finfo(float).eps * self._coordinates.order * np.abs(weights).sum())
+
+    def _smooth(self, joint: int, values: Array) -> TrigonometricPolynomial | None:
+        process = self.processes_[joint]
+        product, level = process.kernel_, process.alpha
+        if self.noise is None:
+            product, level = product.k1, level + product.k2.noise_level
+        noise = level / product.k1.constant_value + NUGGET
+        length_scale = product.k2.k1.length_scale
         return smooth_mean(self._coordinates, joint, length_scale, noise, self._q, values)
 
     def covariance_sum(self, joint: int) -> tuple[Array, float]:

@@ -12,15 +12,13 @@ the size of the torques: they are found by orthogonal factorisation and summed w
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import svd
 from scipy.sparse import diags_array
 from scipy.special import ive
 
-from learning.learners.equivariant_basis import torque_basis
+from learning.learners.equivariant_basis import sparse_torque_basis
 from learning.learners.symmetric_kernel import distinct_rows
 from learning.symmetry_use import SymmetryCoordinates
 from symbolic.trigonometric import TrigonometricPolynomial
@@ -29,14 +27,14 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 #: Waves of less variance, relative to the kernel's, are left out.
-NEGLIGIBLE = 1e-16
-#: More waves than these are not worth it: the kernel sum is used as it is.
+NEGLIGIBLE = (1e-16, 1e-14, 1e-12)
+#: The first of these with which there are at most so many waves counts; with none, sums stay.
 MOST_WAVES = 10_000
-#: Nor are tables of more numbers that say which waves a group allows.
-MOST_NUMBERS = 50_000_000
 
 
-def kernel_waves(rows: Array, weights: Array, length_scale: float) -> tuple[Integers, Array] | None:
+def kernel_waves(
+    rows: Array, weights: Array, length_scale: float, negligible: float = NEGLIGIBLE[0]
+) -> tuple[Integers, Array] | None:
     """Write ``exp(-sum of w_a (1 - cos a.y) / l^2)`` as a series of cosines.
 
     Parameters
@@ -47,11 +45,13 @@ def kernel_waves(rows: Array, weights: Array, length_scale: float) -> tuple[Inte
         w_a.
     length_scale : float
         l [rad].
+    negligible : float
+        Terms that are left out.
 
     Returns
     -------
     (m, r) int array, (m,) array or None
-        Frequencies kappa, one of each pair, and what multiplies ``cos(kappa.y)``, down to 1e-16;
+        Frequencies kappa, one of each pair, and what multiplies ``cos(kappa.y)``;
         None for rows that are not integers and for more than 10,000 frequencies.
 
     Notes
@@ -73,11 +73,11 @@ def kernel_waves(rows: Array, weights: Array, length_scale: float) -> tuple[Inte
     variance: Array = np.ones(1)
     for row, z in zip(whole, np.asarray(weights) / length_scale**2, strict=True):
         order = 0
-        while ive(order + 1, z) > NEGLIGIBLE:
+        while ive(order + 1, z) > negligible:
             order += 1
         n = np.arange(-order, order + 1)
         size = np.outer(variance, ive(np.abs(n), z))
-        i, j = np.nonzero(size > NEGLIGIBLE)
+        i, j = np.nonzero(size > negligible)
         if len(i) > 10 * MOST_WAVES:
             return None
         sums = found[i] + n[j, None] * row
@@ -127,13 +127,17 @@ def smooth_mean(
     (C. E. Rasmussen and C. K. I. Williams, "Gaussian Processes for Machine Learning", 2006, section
     2.1), by the singular values of F; kernels square its condition number.
     """
-    waves = kernel_waves(*distinct_rows(coordinates.A_sat), length_scale)
+    shape = distinct_rows(coordinates.A_sat)
+    tried = (kernel_waves(*shape, length_scale, negligible) for negligible in NEGLIGIBLE)
+    waves = next((found for found in tried if found is not None), None)
     if waves is None:
         return None
     kappa, variance = waves
-    scaled = _scaled_basis(coordinates, output, kappa, variance)
-    if scaled is None:
-        return None
+    known = output < coordinates.Y.shape[1]
+    signs = coordinates.Y[:, output] if known else np.ones(coordinates.order)
+    basis = sparse_torque_basis(coordinates, kappa, signs)
+    # within an orbit all waves have one variance; the kernel is order times the average
+    scaled = diags_array(np.sqrt(coordinates.order * np.tile(variance, 2))) @ basis
     frequencies = kappa @ np.rint(coordinates.basis).astype(np.int64)
     phase = q @ frequencies.T
     features = np.concatenate([np.cos(phase), np.sin(phase)], axis=1) @ scaled
@@ -141,18 +145,3 @@ def smooth_mean(
     gain = size / (size**2 + relative_noise)
     a, b = np.split(scaled @ (right.T @ (gain * (left.T @ values))), 2)
     return TrigonometricPolynomial(frequencies, a, b)
-
-
-def _scaled_basis(
-    coordinates: SymmetryCoordinates, output: int, kappa: Integers, variance: Array
-) -> Any:
-    """Coefficients (2 m, p) of independent functions of variance 1; None if they are too many."""
-    spread = np.sqrt(np.tile(variance, 2))
-    if coordinates.order == 1:
-        return diags_array(spread)
-    if (2 * len(kappa)) ** 2 > MOST_NUMBERS * coordinates.order:
-        return None
-    known = output < coordinates.Y.shape[1]
-    signs = coordinates.Y[:, output] if known else np.ones(coordinates.order)
-    # within an orbit all waves have one variance; the kernel is order times the average
-    return np.sqrt(coordinates.order) * spread[:, None] * torque_basis(coordinates, kappa, signs)

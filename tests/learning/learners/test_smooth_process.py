@@ -6,11 +6,16 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from learning.export.from_learner import torque_form
+from learning.export.torque_form import largest_difference
 from learning.learners import smooth_process
 from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.smooth_process import kernel_waves, smooth_mean
 from learning.learners.symmetric_kernel import distinct_rows
 from learning.symmetry_use import SymmetryCoordinates
+from symbolic.gravity import GravityModel
+from symbolic.robots import load_robot
+from symbolic.symmetries import primary_symmetries
 from tests.learning.learners import planar_arm
 from tests.learning.learners.random_groups import groups, worst_asymmetry
 
@@ -88,7 +93,9 @@ def test_the_same_mean_as_the_sum_of_covariances(monkeypatch):
     monkeypatch.setattr(smooth_process, "MOST_WAVES", 0)
     sums = SymmetricGaussianProcess(**settings).fit(q, torque)
     assert all(found is None for found in sums.waves_)
-    assert np.abs(waves.predict(queries) - sums.predict(queries)).max() < 1e-5
+    size = np.abs(torque).max()
+    assert np.abs(waves.predict(queries) - sums.predict(queries)).max() < 1e-4 * size
+    assert largest_difference(torque_form(waves), waves.predict) < 1e-12 * size
     mean, deviation = waves.predict(queries, return_std=True)
     np.testing.assert_array_equal(mean, waves.predict(queries))
     assert deviation.shape == mean.shape
@@ -97,3 +104,15 @@ def test_the_same_mean_as_the_sum_of_covariances(monkeypatch):
 def test_rows_that_are_no_integers_and_too_many_waves_are_left_alone():
     assert kernel_waves(np.array([[1.0, 0.3]]), np.ones(1), 20.0) is None
     assert kernel_waves(np.eye(7), np.ones(7), 0.5) is None
+
+
+def test_no_digits_are_lost_with_seven_coordinates():
+    """Waves of less than 1e-12 of the variance are left out, and the model stays as good."""
+    gravity = GravityModel(load_robot("panda"))
+    group = primary_symmetries(gravity.potential)
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (180, 7))
+    learner = SymmetricGaussianProcess(group=group).fit(q, gravity.torque(q))
+    assert [found is not None for found in learner.waves_[1:4]] == [True] * 3
+    size = np.abs(gravity.torque(q)).max()
+    assert largest_difference(torque_form(learner), learner.predict) < 1e-12 * size
+    assert np.abs(learner.predict(q) - gravity.torque(q)).max() < 1e-3 * size
