@@ -1,7 +1,7 @@
 """Run benchmarks and write docs/benchmarks.md: ``python -m benchmarks [NAME ...]``.
 
-Without names: derive, gravity_forms and simulate, a few minutes. Other benchmarks (see the files
-beside this one) take longer, are run by name, and are not written to the page.
+Without names: those with a title here, some ten minutes. Other benchmarks (see the files beside
+this one) take longer, are run by name, and are not written to the page.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ TITLES = {
     "derive": "Deriving gravity and its symmetries",
     "gravity_forms": "Evaluating the gravity torque",
     "simulate": "Simulating",
+    "learning_costs": "Learning: updates, predictions, fits",
 }
-PACKAGES = ("numpy", "numba", "pin", "sympy", "casadi", "adam-robotics", "mujoco")
+PACKAGES = ("numpy", "numba", "pin", "sympy", "casadi", "adam-robotics", "mujoco", "scikit-learn")
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
 
 

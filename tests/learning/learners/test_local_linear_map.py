@@ -7,67 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmarks.literal_map import LiteralMap
 from learning.learners.local_linear_map import LocalLinearMap
 from symbolic.errors import InputError
 from tests.learning.learners import planar_arm
 
 GROUP = planar_arm.group()
-
-
-class SlowMap:
-    """Eq. 17-22 for angles: straight from the paper, no cell list, no closed forms."""
-
-    def __init__(self, d, eta, kappa=1.0, iterations=1, distance=None):
-        self.d, self.eta, self.kappa, self.iterations = d, eta, kappa, iterations
-        self.L = distance
-        self.prototypes, self.o, self.W = [], [], []
-
-    def local(self, q):
-        difference = [(q - p + np.pi) % (2 * np.pi) - np.pi for p in self.prototypes]
-        return np.array([self.L @ x for x in difference]) / self.d
-
-    def responsibilities(self, x):
-        weights = np.exp(-np.sum(x**2, axis=1) / self.kappa**2)
-        return weights / weights.sum()
-
-    def value(self, q):
-        x = self.local(q)
-        h = self.responsibilities(x)
-        return sum(h[i] * (self.W[i] @ x[i] + self.o[i]) for i in range(len(x)))
-
-    def derivative(self, q):
-        """dG/dx of Eq. 18 by the product and quotient rules, x in units of d."""
-        x = self.local(q)
-        weights = np.exp(-np.sum(x**2, axis=1) / self.kappa**2)
-        total = weights.sum()
-        d_weights = -2 * x / self.kappa**2 * weights[:, None]
-        result = np.zeros((len(self.o[0]), len(q)))
-        for i in range(len(x)):
-            d_share = d_weights[i] / total - weights[i] / total**2 * d_weights.sum(axis=0)
-            result += np.outer(self.W[i] @ x[i] + self.o[i], d_share)
-            result += weights[i] / total * self.W[i]
-        return result
-
-    def learn(self, q, torque, weight=1.0):
-        if not self.prototypes:
-            self.insert(q, torque, np.zeros((len(torque), len(q))))
-        nearest = np.sqrt((self.local(q) ** 2).sum(axis=1).min())
-        if nearest > 2:
-            self.insert(q, torque, np.zeros((len(torque), len(q))))
-        elif nearest >= 1:
-            self.insert(q, self.value(q), self.derivative(q))
-        x = self.local(q)
-        h = self.responsibilities(x)
-        for _ in range(self.iterations):
-            error = torque - self.value(q)
-            for i in range(len(x)):
-                self.o[i] = self.o[i] + self.eta * 2 * weight * h[i] * error
-                self.W[i] = self.W[i] + self.eta * 2 * weight * h[i] * np.outer(error, x[i])
-
-    def insert(self, q, offset, slope):
-        self.prototypes.append(np.array(q))
-        self.o.append(np.array(offset))
-        self.W.append(np.array(slope))
 
 
 def walk(rng, samples, joints):
@@ -90,7 +35,7 @@ def test_equals_the_printed_equations(seed, joints, kappa, iterations):
     rng = np.random.default_rng(seed)
     q, torque = walk(rng, 60, joints)
     weights = rng.random(60)
-    slow = SlowMap(0.3, 0.4, kappa, iterations, np.eye(joints))
+    slow = LiteralMap(0.3, 0.4, kappa, iterations, distance=np.eye(joints))
     for sample in zip(q, torque, weights, strict=True):
         slow.learn(*sample)
     fast = LocalLinearMap(
@@ -111,7 +56,7 @@ def test_equals_the_printed_equations_for_every_symmetric_copy():
     torque = planar_arm.torque(q)
     metric = sum(A.T @ A for A in GROUP.A_sat)
     distance = np.linalg.cholesky(metric / np.sqrt(np.linalg.det(metric))).T
-    slow = SlowMap(0.3, 0.5, distance=distance)
+    slow = LiteralMap(0.3, 0.5, distance=distance)
     for x, tau in zip(q, torque, strict=True):
         for A, d, Y in zip(GROUP.A_sat, GROUP.d_sat, GROUP.Y, strict=True):
             slow.learn(A @ x + d, Y * tau)
