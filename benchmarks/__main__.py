@@ -17,6 +17,7 @@ TITLES = {
     "gravity_forms": "Evaluating the gravity torque",
     "simulate": "Simulating",
     "learning_costs": "Learning: updates, predictions, fits",
+    "growth": "How costs grow",
 }
 PACKAGES = ("numpy", "numba", "pin", "sympy", "casadi", "adam-robotics", "mujoco", "scikit-learn")
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"

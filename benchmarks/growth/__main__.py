@@ -1,6 +1,6 @@
 """Measure how costs grow with joints, samples, prototypes and the order of the group.
 
-Usage: python -m benchmarks.growth [--turns 5] [--no-pictures] [NAME ...]
+Usage: python -m benchmarks.growth [--turns 9] [--no-pictures] [NAME ...]
 
 NAME is joints, samples, prototypes or orders, all by default. Times are processor times of one
 thread, medians of several turns in which the curves over one quantity alternate; points that take
@@ -45,16 +45,17 @@ arms have them all; a planar chain has n, and a group of order 2^(n + 1). Sample
 of the 2R arm with its group of order 8. Online learners get samples in blocks of {samples.BLOCK}
 and learn all of them: exponent 1 means that a sample costs the same however many came before. The
 network takes a fixed number of steps. `RecursiveLeastSquares` keeps 1000 samples; until then it has
-none to choose from, and a sample costs less. `LocalLinearMap` looks at as many prototypes however
-many there are, but samples far from each other find them outside the processor's cache; along a
-path they do not. Prototypes are of the 2R arm without symmetries;
-orders are those of nested subgroups of the planar arm with four joints."""
+none to choose from, and a sample costs less. Prototypes are of the 2R arm without symmetries.
+`LocalLinearMap` looks at as many prototypes however many there are, but samples far from each other
+find them outside the processor's cache; along a path they do not. A sample that becomes a prototype
+is put into a sorted list of all of them. Orders are those of nested subgroups of the group of the
+planar arm with four joints, the number of samples and prototypes being the same."""
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("names", nargs="*", help=f"{', '.join(FAMILIES)}; all by default")
-    parser.add_argument("--turns", type=int, default=5, help="turns of each point")
+    parser.add_argument("--turns", type=int, default=9, help="turns of each point")
     parser.add_argument("--no-pictures", action="store_true", help="write no pictures")
     options = parser.parse_args()
     unknown = set(options.names) - set(FAMILIES)

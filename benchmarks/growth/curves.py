@@ -18,9 +18,9 @@ Array = NDArray[np.float64]
 
 LONGEST = 10.0
 """A curve ends with the first point that takes longer [s]."""
-PATIENCE = 2.0
+PATIENCE = 1.5
 """A point is measured in further turns until so much time was spent on it [s]."""
-SHORTEST = 5e-3
+SHORTEST = 1e-2
 """What takes less is repeated within a turn [s]."""
 
 
@@ -158,9 +158,9 @@ def _line(x: Array, y: Array) -> tuple[float, float, float]:
 
 
 def measure(
-    curves: Sequence[Curve], turns: int = 5, progress: Callable[[str], Any] | None = None
+    curves: Sequence[Curve], turns: int = 9, progress: Callable[[str], Any] | None = None
 ) -> list[Measured]:
-    """Time all points of all curves, one after the other, several times over.
+    """Time all points of all curves, one after the other, forth and back several times.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def measure(
         if position < len(curve.x)
     ]
     for turn in range(turns):
-        for position, number in points:
+        for position, number in reversed(points) if turn % 2 else points:
             curve, point = curves[number], (position, number)
             if number in ended and position > ended[number]:
                 continue

@@ -37,7 +37,7 @@ def picture(quantity: str, measured: Sequence[Measured]) -> Figure:
     entries = max(len(group) for group in grouped)
     with settings():
         height = HEIGHT + PER_ENTRY * (entries + 1)
-        figure, axes = panels(len(kinds), width=4.4, height=height)
+        figure, axes = panels(len(kinds), width=4.4 if len(kinds) > 1 else 5.6, height=height)
         for ax, kind, group in zip(axes, kinds, grouped, strict=True):
             for number, one in enumerate(group):
                 _draw(ax, one, number)
@@ -89,4 +89,4 @@ def _finish(ax: Axes, quantity: str, kind: str, group: Sequence[Measured]) -> No
     ax.set_title(kind)
     ax.grid(True, which="major")
     ax.tick_params(which="minor", color=FAINT)
-    ax.legend(loc="upper left", bbox_to_anchor=(-0.02, -0.16), borderaxespad=0.0)
+    ax.legend(loc="upper left", bbox_to_anchor=(-0.02, -0.2), borderaxespad=0.0)

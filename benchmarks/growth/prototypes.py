@@ -19,8 +19,9 @@ LEAST_SQUARES = (3, 5, 8, 13, 20, 28)
 JITTER, RADIUS = 0.1, 0.79
 """Of prototypes from places of a square lattice, and the learner's, in steps of the lattice: all
 are farther apart than the radius."""
-MEMORY = 100
-"""Samples that recursive least squares keep: few, for its prototypes are what is looked at."""
+MEMORY = 20
+"""Samples that recursive least squares keep where updates are timed: few, for to choose them costs
+more than the update of few prototypes."""
 SAMPLES = 1000
 
 
@@ -65,9 +66,9 @@ def _map(count: int) -> LocalLinearMap:
     return LocalLinearMap(RADIUS * step).partial_fit(q, _gravity().torque(q))
 
 
-def _least_squares(count: int) -> RecursiveLeastSquares:
+def _least_squares(count: int, memory: int) -> RecursiveLeastSquares:
     q, step = spread(count)
-    found = RecursiveLeastSquares(RADIUS * step, memory=MEMORY).partial_fit(q, _gravity().torque(q))
+    found = RecursiveLeastSquares(RADIUS * step, memory=memory).partial_fit(q, _gravity().torque(q))
     found.predict(q[:1])  # solves
     return found
 
@@ -81,7 +82,7 @@ def _filled(kind: str, count: int) -> LocalLinearMap | RecursiveLeastSquares:
     RuntimeError
         If it has another number.
     """
-    learner = _map(count) if kind == PANELS[0] else _least_squares(count)
+    learner = _map(count) if kind == PANELS[0] else _least_squares(count, MEMORY)
     if learner.n_prototypes_ != count:
         raise RuntimeError(f"{learner.n_prototypes_} prototypes, not {count}")
     return learner
@@ -115,6 +116,8 @@ def _map_filling(count: int) -> Work:
 def _squares_update(count: int) -> Work:
     learner, q = _filled(PANELS[1], count), spread(count)[0][:1]
     torque = _gravity().torque(q)
+    for _ in range(MEMORY):  # until no more room is left: then updates cost the same
+        learner.partial_fit(q, torque)
     return Work(lambda: learner.partial_fit(q, torque))
 
 
@@ -124,5 +127,5 @@ def _squares_prediction(count: int) -> Work:
 
 
 def _squares_anew(count: int) -> Work:
-    """What a new prototype leads to: features and factors of all samples kept."""
-    return Work(lambda: _least_squares(count))
+    """What a new prototype leads to: features and factors of all samples kept, one for each."""
+    return Work(lambda: _least_squares(count, count))
