@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -138,11 +139,17 @@ class SymmetrisedPeriodicKernel(Kernel):
 
     def _circles(self, y: Array) -> Array:
         """Coordinates on the circles of every row a, (..., 2 rows)."""
-        rows, weights = distinct_rows(self.coordinates.A_sat)
+        rows, weights = _rows_of(self.coordinates)
         phase = y @ rows.T
         return np.asarray(np.sqrt(np.tile(weights, 2))) * np.concatenate(
             [np.cos(phase), np.sin(phase)], axis=-1
         )
+
+
+@lru_cache(maxsize=16)
+def _rows_of(coordinates: SymmetryCoordinates) -> tuple[Array, Array]:
+    """`distinct_rows` of a group, which a search for hyperparameters asks for hundreds of times."""
+    return distinct_rows(coordinates.A_sat)
 
 
 def distinct_rows(A_sat: Array) -> tuple[Array, Array]:

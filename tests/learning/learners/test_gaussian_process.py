@@ -134,3 +134,15 @@ def test_refuses_what_does_not_fit():
         SymmetricGaussianProcess().fit([[np.nan]], [[1.0]])
     with pytest.raises(InputError, match="number of columns"):
         SymmetricGaussianProcess(group=planar_arm.group()).fit([[0.0, 0.0]], [[1.0]])
+
+
+@pytest.mark.parametrize("noise", [0.05, None])
+def test_mean_is_that_of_scikit_learn(noise):
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (20, 2))
+    torque = planar_arm.torque(q)
+    learner = SymmetricGaussianProcess(noise, length_scale=1.0, group=planar_arm.group())
+    learner.fit(q, torque)
+    assert learner.waves_ == [None, None]
+    expected = [process.predict(q + 0.3) for process in learner.processes_]
+    scale = np.sqrt(np.mean(torque**2, axis=0))
+    assert np.abs(learner.predict(q + 0.3) - np.transpose(expected) * scale).max() < 1e-11
