@@ -19,12 +19,10 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import signal
 import statistics
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -36,6 +34,7 @@ import numpy as np
 import pinocchio as pin
 import sympy
 
+from benchmarks.time_limit import OutOfTimeError, at_most
 from benchmarks.urdf_arms import Subject, subjects
 from symbolic.gravity import GravityModel
 from symbolic.kinematic_tree import KinematicTree, human_arm, planar_arm
@@ -50,26 +49,6 @@ except ImportError:
 DEMANDED = {"panda": 0.2, "talos_left_arm": 1.0}
 DEMANDED_SMALL = 0.05  # arms of six or seven joints with up to 60 frequencies
 DEMANDED_PARAMETRIC = 2.0
-
-
-class OutOfTimeError(Exception):
-    """A method took longer than the limit."""
-
-
-@contextmanager
-def at_most(seconds: float) -> Iterator[None]:
-    """Raise OutOfTimeError in the block after so many seconds."""
-
-    def stop(*_: object) -> None:
-        raise OutOfTimeError
-
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
 
 
 # -- the four ways ------------------------------------------------------------------------------

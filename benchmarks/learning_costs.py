@@ -22,13 +22,12 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import signal
 import statistics
 import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -42,6 +41,7 @@ from benchmarks.learning_contests import (
     prediction_contests,
     update_contest,
 )
+from benchmarks.time_limit import OutOfTimeError, at_most
 
 ROBOTS = ("2r", "3r", "ur5")
 KNOWN = 400  # samples learned before updates are timed
@@ -56,26 +56,6 @@ NOTES = {
     "Batch fits": "Fits to a lattice in the fundamental domain, scikit-learn's to all copies. "
     "The network has 16 random starts, MLPRegressor one.",
 }
-
-
-class OutOfTimeError(Exception):
-    """A fit took longer than the limit."""
-
-
-@contextmanager
-def at_most(seconds: float) -> Iterator[None]:
-    """Raise OutOfTimeError in the block after so many seconds of processor time."""
-
-    def stop(*_: object) -> None:
-        raise OutOfTimeError
-
-    before = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
 
 
 @dataclass(frozen=True)

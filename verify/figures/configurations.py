@@ -1,4 +1,4 @@
-"""Fig. 6, 10 and 11 of the paper: sets in the configuration space."""
+"""Fig. 6 and 10 of the paper: sets in the configuration space."""
 
 from __future__ import annotations
 
@@ -121,49 +121,4 @@ def explored_map(
                 polygon_on_torus(ax, corners, fill=False, edgecolor=INK, linewidth=1.1)
         marks = ((f"explored ({len(red)})", RED), (f"learned ({len(blue)})", BLUE))
         key(axes[0], [mark("o", colour, label) for label, colour in marks])
-        return figure
-
-
-def reached_map(
-    targets: ArrayLike,
-    observed: ArrayLike,
-    *,
-    domain: ArrayLike | None = None,
-    joint_names: Sequence[str] | None = None,
-) -> Figure:
-    """Draw test targets (red crosses) and where the arm stayed (blue circles), Fig. 11 and 12.
-
-    Parameters
-    ----------
-    targets, observed
-        Configurations (m, n) [rad].
-    domain
-        Corners of the domain of two joints, (v, 2) [rad].
-    joint_names
-        Labels of the joints.
-
-    Returns
-    -------
-    Figure
-    """
-    wanted, seen = rows(targets, what="targets"), rows(observed, what="observed")
-    n = wanted.shape[1]
-    names = names_of(joint_names, n)
-    with settings():
-        pairs = joint_pairs(n)
-        figure, axes = panels(len(pairs), width=3.7, height=3.75)
-        for ax, (i, j) in zip(axes, pairs, strict=True):
-            angle_plane(ax, (names[i], names[j]))
-            seen_at, wanted_at = ((x + np.pi) % (2 * np.pi) - np.pi for x in (seen, wanted))
-            ax.plot(
-                seen_at[:, i], seen_at[:, j], "o", color=BLUE, markersize=5.0,
-                markerfacecolor="none", markeredgewidth=0.9,
-            )  # fmt: skip
-            ax.plot(wanted_at[:, i], wanted_at[:, j], "x", color=RED, markersize=3.6)
-            if domain is not None and n == 2:
-                corners = ordered(rows(domain, 2, what="domain"))
-                polygon_on_torus(ax, corners, fill=False, edgecolor=INK, linewidth=1.1)
-        circle = mark("o", BLUE, "observed")
-        circle.set_markerfacecolor("none")
-        key(axes[0], [mark("x", RED, "target"), circle])
         return figure

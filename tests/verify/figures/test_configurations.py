@@ -8,8 +8,8 @@ from matplotlib.colors import same_color
 from matplotlib.patches import Polygon
 
 from symbolic.errors import InputError
-from verify.figures.configurations import domain_map, explored_map, reached_map
-from verify.figures.style import FAINT, GREEN, to_svg
+from verify.figures.configurations import domain_map, explored_map
+from verify.figures.style import FAINT, GREEN
 
 PARALLELOGRAM = np.array(
     [[0.0, 0.0], [np.pi / 2, np.pi / 2], [np.pi / 2, -np.pi / 2], [0.0, np.pi]]
@@ -60,15 +60,6 @@ def test_explored_configurations_are_drawn_pair_by_pair(n, panels):
     assert np.abs(explored).max() <= np.pi
     words = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert words == ["explored (30)", "learned (50)"]
-
-
-def test_targets_and_observed_configurations():
-    targets = np.random.default_rng(0).uniform(-3, 3, (66, 2))
-    figure = reached_map(targets, targets + 0.01, domain=PARALLELOGRAM)
-    drawn = {line.get_marker(): line.get_xydata() for line in figure.axes[0].lines}
-    assert np.allclose(drawn["x"], targets)
-    assert len(drawn["o"]) == 66
-    assert to_svg(figure, "x").startswith("<svg")
 
 
 def test_wrong_shapes_are_refused():
