@@ -90,7 +90,7 @@ def learn(
             robot, data, learner, symmetries, drop_outliers, seed, snap=not no_snap
         )
         with progress_bars(quiet) as progress:
-            learned = learn_from_data(recording, output_directory(out), progress)
+            learned = learn_from_data(recording, out, progress)
     else:
         _refuse(given, ("drop_outliers",), "a simulated arm")
         options = learn_options(robot, out, strategy, symmetries, learner, samples, given)

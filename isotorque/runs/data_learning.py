@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from isotorque.files import output_directory
 from isotorque.runs.data_relations import RelationsOfData
 from isotorque.runs.data_remarks import analytic_remarks, outlier_remarks
 from isotorque.runs.experiment import Progress
@@ -107,8 +108,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     robot = load_robot(options.robot, snap=options.snap)
     samples = read_csv(options.file, robot.joint_names)
     gravity = GravityModel(robot)
-    out.mkdir(parents=True, exist_ok=True)
-    _record(robot, samples, out)
+    _record(robot, samples, output_directory(out))
     name = options.learner or ("gaussian-process" if len(samples.q) <= MANY_ROWS else "network")
     task = options.task(samples)
 

@@ -170,7 +170,7 @@ def test_bad_files_are_one_line(learn, tmp_path, kind):
     assert message.count("\n") == 1
     for word in ("arm.csv", *words):
         assert word in message
-    assert not (tmp_path / "out" / "run.sqlite").exists()
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(
