@@ -179,8 +179,12 @@ def test_help_of_every_command(call):
         "simulate",
         "discover",
         "relations",
+        "learn",
         "verify",
         "run",
+        "export",
+        "paper",
+        "sweep",
     ):
         code, out, _ = call(command, "--help")
         assert code == 0
