@@ -24,7 +24,7 @@ from symbolic.trigonometric import TrigonometricPolynomial
 
 Array = NDArray[np.float64]
 
-#: Rows of the covariance of queries and samples computed together, to bound memory.
+#: Covariances, or waves, of queries and samples computed together, to bound memory.
 TOGETHER = 4_000_000
 #: Nugget, relative to the amplitude, that keeps noise-free covariances invertible.
 NUGGET = 1e-12
@@ -135,7 +135,8 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
         fitted(self)
         q = checked_configurations(self, X, first=False)
         mean, deviation = np.zeros((2, len(q), self.n_outputs_))
-        together = max(1, TOGETHER // len(self._q))
+        waves = max((len(found) for found in self.waves_ if found is not None), default=0)
+        together = max(1, TOGETHER // max(len(self._q), waves))
         for joint, process in enumerate(self.processes_):
             for i in range(0, len(q), together):
                 part = slice(i, i + together)
