@@ -101,10 +101,11 @@ def _gaussian_process(learner: SymmetricGaussianProcess) -> Kernels | Waves:
     arrays, group = learner.to_arrays(), learner._coordinates
     outputs, scale = range(learner.n_outputs_), arrays["scale"]
     waves = _waves_of_means(learner, scale)
-    if all(found is not None for found in learner.waves_):
-        return waves
     sums = [learner.covariance_sum(j) for j in outputs]
-    alive = [learner.waves_[j] is None for j in outputs]
+    # a joint whose torque is always zero needs neither
+    alive = [learner.waves_[j] is None and sums[j][0].any() for j in outputs]
+    if not any(alive):
+        return waves
     rows, shares = distinct_rows(group.A_sat)
     radii = np.sqrt(shares)
     phase = arrays["q"] @ group.basis.T @ rows.T

@@ -7,6 +7,7 @@ from sklearn.linear_model import LinearRegression
 from learning.export.from_learner import torque_form
 from learning.export.torque_form import evaluate, largest_difference
 from learning.export.waves import Waves
+from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.network import FeedForwardNetwork
 from learning.learners.trigonometric import EquivariantTrigonometric
 from symbolic.domain import FundamentalDomain
@@ -14,7 +15,7 @@ from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot
 from symbolic.symmetries import primary_symmetries
-from tests.learning.export.models import QUICK, fitted_learner
+from tests.learning.export.models import QUICK, fitted_learner, samples
 from verify.strategies import known_arms
 
 
@@ -31,6 +32,16 @@ def test_networks_in_the_domain_of_any_group(arm, seed):
     expected = learner.predict(queries)
     found = evaluate(torque_form(learner), queries)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
+
+
+def test_processes_of_long_length_scale_are_waves_alone():
+    """Three joints of the ur5 never feel gravity: no kernels for them."""
+    q, torque = samples("ur5", 64)
+    group = primary_symmetries(GravityModel(load_robot("ur5")).potential)
+    learner = SymmetricGaussianProcess(group=group).fit(q, torque)
+    form = torque_form(learner)
+    assert isinstance(form, Waves)
+    assert largest_difference(form, learner.predict) < 1e-12 * np.abs(torque).max()
 
 
 def test_representatives_lie_in_the_domain():
