@@ -103,8 +103,8 @@ def _gaussian_process(learner: SymmetricGaussianProcess) -> Kernels | Waves:
     waves = _waves_of_means(learner, scale)
     sums = [learner.covariance_sum(j) for j in outputs]
     # a joint whose torque is always zero needs neither
-    alive = [learner.waves_[j] is None and sums[j][0].any() for j in outputs]
-    if not any(alive):
+    alive = np.array([learner.waves_[j] is None and sums[j][0].any() for j in outputs], dtype=bool)
+    if not alive.any():
         return waves
     rows, shares = distinct_rows(group.A_sat)
     radii = np.sqrt(shares)
