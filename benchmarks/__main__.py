@@ -14,6 +14,7 @@ from pathlib import Path
 
 TITLES = {
     "derive": "Deriving gravity and its symmetries",
+    "groups": "Groups beside brute force",
     "gravity_forms": "Evaluating the gravity torque",
     "simulate": "Simulating",
     "learning_costs": "Learning: updates, predictions, fits",

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import sympy
 from hypothesis import HealthCheck, assume, given, settings
-from scipy.optimize import fsolve
 
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
@@ -16,49 +15,8 @@ from symbolic.relations import SymmetryRelation, wrap
 from symbolic.robots import load_robot
 from symbolic.symmetries import primary_symmetries
 from symbolic.trigonometric import TrigonometricPolynomial
+from verify.brute_force import brute_force_symmetries
 from verify.strategies import kinematic_trees, known_arms
-
-
-def brute_force(g, n, rng):
-    """Find all (A, d, Y), entries of A in -2..2, from nothing but values of g.
-
-    The image p1 = A p0 + d of a generic p0 has torque Y g(p0): all such p1 are found from a grid
-    of starts pi/4 apart, refined. Columns of A are then tried one by one along lines through p1,
-    and what is left is tried on random points.
-    """
-    p0 = rng.uniform(-np.pi, np.pi, n)
-    grid = np.array(list(itertools.product(np.arange(8) * np.pi / 4, repeat=n)))
-    columns = np.array(list(itertools.product(range(-2, 3), repeat=n)))
-    steps = np.array([0.4, -0.9, 1.7])
-    found = []
-    for signs in itertools.product([1, -1], repeat=n):
-        Y = np.array(signs)
-        target = Y * g(p0)
-        images = []
-        # starts whose torque is far off lead to roots that nearer starts find too
-        near = np.argsort(np.abs(g(grid) - target).max(axis=1))[: 64 * n]
-        for start in grid[near]:
-            root, _, status, _ = fsolve(lambda q, t=target: g(q) - t, start, full_output=True)
-            root = wrap(root)
-            if (
-                status == 1
-                and np.abs(g(root) - target).max() < 1e-8
-                and not any(np.abs(wrap(root - other)).max() < 1e-5 for other in images)
-            ):
-                images.append(root)
-        for p1 in images:
-            choices = []
-            for j in range(n):
-                line = np.array([g(p0 + t * np.eye(n)[j]) for t in steps]) * Y
-                walked = g(p1 + steps[:, None, None] * columns[None])
-                choices.append(columns[np.abs(walked - line[:, None]).max(axis=(0, 2)) < 1e-6])
-            for pick in itertools.product(*choices):
-                A = np.array(pick).T
-                d = p1 - A @ p0
-                q = rng.uniform(-np.pi, np.pi, (20, n))
-                if np.abs(g(q @ A.T + d) - Y * g(q)).max() < 1e-6:
-                    found.append(SymmetryRelation(A, d, Y))
-    return found
 
 
 @pytest.mark.parametrize(("name", "order"), [("2r", 8), ("3r", 16)])
@@ -67,7 +25,7 @@ def test_brute_force_finds_the_same_sets(name, order):
     group = primary_symmetries(gravity.potential)
     assert group.order == order
     assert group.exact
-    found = brute_force(gravity.torque, gravity.n, np.random.default_rng(1))
+    found = brute_force_symmetries(gravity.torque, gravity.n, np.random.default_rng(1))
     assert len(found) == order
     assert all(relation in group for relation in found)
 
@@ -80,7 +38,7 @@ def test_brute_force_finds_nothing_more_on_random_arms(tree):
     # along free directions images are not isolated; tiny terms are below brute force's eyesight
     assume(group.rank == 2)
     assume(potential.amplitudes().min() > 0.01 * potential.amplitudes().max())
-    found = brute_force(potential.gradient, 2, np.random.default_rng(2))
+    found = brute_force_symmetries(potential.gradient, 2, np.random.default_rng(2))
     small = [r for r in group if np.abs(r.A).max() <= 2]
     assert all(relation in group for relation in found)
     assert len(found) == len(small)
