@@ -39,8 +39,8 @@ def c_source(form: TorqueForm, about: Sequence[str] = (), joints: Sequence[str] 
     >>> import numpy as np
     >>> from learning.export.waves import Waves
     >>> pendulum = Waves(np.array([[1]]), np.array([[6.13]]), np.array([[0.0]]))
-    >>> print(c_source(pendulum).partition("void")[1:][1].splitlines()[0])
-     isotorque_gravity(const double *q, double *tau)
+    >>> [line for line in c_source(pendulum).splitlines() if line.startswith("void")]
+    ['void isotorque_gravity(const double *q, double *tau)']
     """
     if form.outputs != form.joints:
         raise InputError("export", "torques per sample", form.outputs, f"{form.joints} (joints)")
