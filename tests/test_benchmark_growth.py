@@ -74,7 +74,15 @@ def smallest():
     }
 
 
-@pytest.mark.parametrize("name", list(smallest()))
+@pytest.mark.parametrize(
+    "name",
+    [
+        "joints",
+        "prototypes",
+        pytest.param("samples", marks=pytest.mark.slow),
+        pytest.param("orders", marks=pytest.mark.slow),
+    ],
+)
 def test_every_curve_can_be_measured(name):
     curves = smallest()[name]
     found = measure(curves, turns=1)

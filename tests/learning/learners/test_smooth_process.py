@@ -106,6 +106,7 @@ def test_rows_that_are_no_integers_and_too_many_waves_are_left_alone():
     assert kernel_waves(np.eye(7), np.ones(7), 0.5) is None
 
 
+@pytest.mark.slow
 def test_no_digits_are_lost_with_seven_coordinates():
     """Waves of less than 1e-12 of the variance are left out, and the model stays as good."""
     gravity = GravityModel(load_robot("panda"))
