@@ -35,7 +35,7 @@ lint: $(VENV)/.installed-test,lint ## style, types and import contracts
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(VENV)/.installed-test,robots,bench ## measure costs as ratios, side by side; about a quarter of an hour
+bench: $(VENV)/.installed-test,robots,bench ## measure costs as ratios, side by side; about ten minutes
 	$(BIN)/python -m benchmarks
 
 docs: $(VENV)/.installed-test,robots,bench ## make the figures and tables of docs/ anew
