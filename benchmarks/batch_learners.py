@@ -46,6 +46,20 @@ def circles(learner: Any) -> Any:
     )
 
 
+def multilayer(group: Any, hidden: int, seed: int = 0) -> Any:
+    """MLPRegressor fitted by L-BFGS to all copies."""
+    settings = {"solver": "lbfgs", "alpha": 1e-9, "max_iter": 2000, "tol": 1e-9}
+    learner = MLPRegressor(
+        hidden_layer_sizes=(hidden,), activation="tanh", random_state=seed, **settings
+    )
+    return SymmetricSamples(circles(learner), group)
+
+
+def kernel_ridge(group: Any, alpha: float = 1e-8) -> Any:
+    """KernelRidge fitted to all copies."""
+    return SymmetricSamples(circles(KernelRidge(alpha=alpha, kernel="rbf", gamma=0.1)), group)
+
+
 def learners(robot: str, samples: int, noise: float, seed: int) -> dict[str, Callable[[Any], Any]]:
     """A fresh learner for a group, by name; ``noise`` is the error of angles [rad]."""
     hidden = 30 if robot == "3r" and samples >= 150 else 18
@@ -54,21 +68,12 @@ def learners(robot: str, samples: int, noise: float, seed: int) -> dict[str, Cal
     def of_mode(mode: str) -> Callable[[Any], Any]:
         return lambda group: FeedForwardNetwork(hidden, symmetries=mode, group=group, **network)
 
-    def multilayer(group: Any) -> Any:
-        settings = {"solver": "lbfgs", "alpha": 1e-9, "max_iter": 2000, "tol": 1e-9}
-        learner = MLPRegressor(
-            hidden_layer_sizes=(hidden,), activation="tanh", random_state=seed, **settings
-        )
-        return SymmetricSamples(circles(learner), group)
-
     return {
         "network": of_mode("averaged"),
         "network, augmented": of_mode("augmented"),
         "network, canonical": of_mode("canonical"),
-        "MLP (scikit-learn)": multilayer,
-        "kernel ridge (scikit-learn)": lambda group: SymmetricSamples(
-            circles(KernelRidge(alpha=1e-8 if not noise else 1e-2, kernel="rbf", gamma=0.1)), group
-        ),
+        "MLP (scikit-learn)": lambda group: multilayer(group, hidden, seed),
+        "kernel ridge (scikit-learn)": lambda group: kernel_ridge(group, 1e-2 if noise else 1e-8),
         "gaussian process": lambda group: SymmetricGaussianProcess(
             noise=None if noise else 0.0, group=group
         ),

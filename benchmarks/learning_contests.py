@@ -15,6 +15,7 @@ import pinocchio as pin
 from sklearn.base import clone
 
 from benchmarks import learning_peers as peers
+from benchmarks.batch_learners import kernel_ridge, multilayer
 from benchmarks.literal_map import ArrayMap, LiteralMap
 from benchmarks.online.learners import joint, replayed, replayed_3r
 from learning.learners.by_name import LearningTask, learner_by_name
@@ -187,9 +188,9 @@ def prediction_contests(bench: Bench, known: int, count: int) -> dict[str, list[
         "trigonometric": (waves, ()),
         "literal LLM, arrays": (ArrayMap.like(printed), ("LLM",)),
         "MLPRegressor": (
-            peers.batch_network(bench.group, network.hidden).fit(*samples), ("network",)
+            multilayer(bench.group, network.hidden).fit(*samples), ("network",)
         ),
-        "KernelRidge": (peers.kernel_ridge(bench.group).fit(*samples), kernels),
+        "KernelRidge": (kernel_ridge(bench.group).fit(*samples), kernels),
         "GaussianProcessRegressor": (peers.gaussian_process(bench.group).fit(*samples), kernels),
     }  # fmt: skip
     ways: dict[str, list[Contestant]] = {"one at a time": [], f"{TEST} in one call": []}
@@ -243,7 +244,7 @@ def fit_contest(bench: Bench, count: int) -> list[Contestant]:
     return [
         *map(ours, ("network", "gaussian-process", "trigonometric", "parametric")),
         contestant(
-            "MLPRegressor", lambda: peers.batch_network(bench.group, hidden), ("network",)
+            "MLPRegressor", lambda: multilayer(bench.group, hidden), ("network",)
         ),
         contestant(
             "GaussianProcessRegressor", lambda: peers.gaussian_process(bench.group),

@@ -9,7 +9,6 @@ from sklearn.base import BaseEstimator, RegressorMixin, clone
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel
 from sklearn.kernel_approximation import RBFSampler
-from sklearn.kernel_ridge import KernelRidge
 from sklearn.linear_model import LinearRegression, SGDRegressor
 from sklearn.multioutput import MultiOutputRegressor
 from sklearn.neural_network import MLPRegressor
@@ -77,20 +76,6 @@ def online_features(group: SymmetryGroup, scale: Array) -> Any:
     linear = SGDRegressor(learning_rate="constant", eta0=0.5, penalty=None)
     sampler = RBFSampler(gamma=0.3, n_components=300, random_state=0)
     return SymmetricSamples(OnlineCircles(MultiOutputRegressor(linear), scale, sampler), group)
-
-
-def batch_network(group: SymmetryGroup, hidden: int) -> Any:
-    """MLPRegressor fitted by L-BFGS, as in the benchmark of batch learning."""
-    network = MLPRegressor(
-        hidden_layer_sizes=(hidden,), activation="tanh", solver="lbfgs", alpha=1e-9,
-        max_iter=2000, tol=1e-9, random_state=0,
-    )  # fmt: skip
-    return SymmetricSamples(circles(network), group)
-
-
-def kernel_ridge(group: SymmetryGroup) -> Any:
-    """KernelRidge with the settings of the benchmark of batch learning."""
-    return SymmetricSamples(circles(KernelRidge(alpha=1e-8, kernel="rbf", gamma=0.1)), group)
 
 
 def gaussian_process(group: SymmetryGroup) -> Any:

@@ -123,18 +123,14 @@ def _gaussian_process(learner: SymmetricGaussianProcess) -> Kernels | Waves:
 
 def _waves_of_means(learner: SymmetricGaussianProcess, scale: Array) -> Waves:
     """The joints whose means are waves, on the frequencies of all of them."""
-    joints, outputs = learner.n_features_in_, learner.n_outputs_
-    parts = [
-        (j, found.frequencies, found.cos, found.sin)
-        for j, found in enumerate(learner.waves_)
-        if found is not None
-    ]
-    rows = np.concatenate([np.zeros((0, joints), dtype=np.int64), *(k for _, k, _, _ in parts)])
+    means = [(j, found) for j, found in enumerate(learner.waves_) if found is not None]
+    none = np.zeros((0, learner.n_features_in_), dtype=np.int64)
+    rows = np.concatenate([none, *(found.frequencies for _, found in means)])
+    joint = np.repeat([j for j, _ in means], [len(found) for _, found in means]).astype(int)
     k, member = np.unique(rows, axis=0, return_inverse=True)
-    cos, sin = np.zeros((2, len(k), outputs))
-    place = np.split(member.ravel(), np.cumsum([len(k) for _, k, _, _ in parts])[:-1])
-    for (j, _, a, b), at in zip(parts, place, strict=False):
-        cos[at, j], sin[at, j] = a * scale[j], b * scale[j]
+    cos, sin = np.zeros((2, len(k), learner.n_outputs_))
+    for table, parts in ((cos, [f.cos for _, f in means]), (sin, [f.sin for _, f in means])):
+        table[member.ravel(), joint] = np.concatenate([[], *parts]) * scale[joint]
     return Waves(k, cos, sin).without_rounding()
 
 

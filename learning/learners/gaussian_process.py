@@ -187,10 +187,8 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
         return float(np.finfo(float).eps * self._coordinates.order * np.abs(weights).sum())
 
     def _smooth(self, joint: int, values: Array) -> TrigonometricPolynomial | None:
-        process = self.processes_[joint]
-        product, level = process.kernel_, process.alpha
-        if self.noise is None:
-            product, level = product.k1, level + product.k2.noise_level
+        process, product = self.processes_[joint], self._product(joint)
+        level = process.alpha + (process.kernel_.k2.noise_level if self.noise is None else 0.0)
         noise = level / product.k1.constant_value + NUGGET
         length_scale = product.k2.k1.length_scale
         return smooth_mean(self._coordinates, joint, length_scale, noise, self._q, values)
@@ -206,10 +204,14 @@ class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
         length_scale : float
             Of the kernel [rad].
         """
-        process = self.processes_[joint]
-        product = process.kernel_ if self.noise is not None else process.kernel_.k1
-        weights = product.k1.constant_value * process.alpha_.ravel()
+        product = self._product(joint)
+        weights = product.k1.constant_value * self.processes_[joint].alpha_.ravel()
         return weights, float(product.k2.k1.length_scale)
+
+    def _product(self, joint: int) -> Any:
+        """Amplitude times periodic kernel and nugget, without the noise that was estimated."""
+        kernel = self.processes_[joint].kernel_
+        return kernel if self.noise is not None else kernel.k1
 
     def _kernel(self, joint: int) -> Kernel:
         bounds = "fixed" if self.length_scale is not None else (0.05, 50.0)
