@@ -44,7 +44,8 @@ def in_processes(
     Notes
     -----
     Work whose process was lost is done again. Errors of the work itself are raised here. When the
-    caller stops (an error, Ctrl-C), work that has not begun is dropped.
+    caller stops (an error, Ctrl-C), work that has not begun is dropped, work that has begun is
+    ended, and no process is left.
 
     Examples
     --------
@@ -90,10 +91,10 @@ def _one_pool(
                     continue
                 yield place, result
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
         if futures:  # given up: nobody waits for what is still being done
             for process in set(multiprocessing.active_children()) - before:
                 process.terminate()
+        pool.shutdown(cancel_futures=True)  # which waits until every process has ended
 
 
 def _leave_with_parent() -> None:

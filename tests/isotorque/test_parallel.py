@@ -1,6 +1,7 @@
 """Work in several processes: every task once, lost processes, interruption."""
 
 import math
+import multiprocessing
 import os
 import signal
 import time
@@ -66,16 +67,29 @@ def test_errors_of_the_work_are_raised():
         list(in_processes(math.factorial, [1, -1], jobs=2))
 
 
-def test_a_caller_that_stops_leaves_no_process_behind():
-    import multiprocessing
+def own_process(_: int) -> int:
+    time.sleep(0.05)  # long enough for both processes to get some of the work
+    return os.getpid()
 
+
+@pytest.mark.parametrize("seconds", [0.0, 600.0], ids=["idle", "at work"])
+def test_a_caller_that_stops_leaves_no_process_behind(seconds):
     before = set(multiprocessing.active_children())
-    results = in_processes(wait_for, [0.0, 600.0, 600.0], jobs=2)
+    results = in_processes(wait_for, [0.0, seconds, seconds], jobs=2)
     assert next(results) == (0.0, 0.0)
+    begun = set(multiprocessing.active_children()) - before
+    assert begun
     results.close()
-    for process in set(multiprocessing.active_children()) - before:
-        process.join(30)
-        assert not process.is_alive()
+    assert not begun & set(multiprocessing.active_children())
+    for process in begun:
+        with pytest.raises(ProcessLookupError):
+            os.kill(process.pid, 0)
+
+
+def test_finished_work_leaves_no_process_behind():
+    for pid in {pid for _, pid in in_processes(own_process, range(8), jobs=2)}:
+        with pytest.raises(ProcessLookupError):
+            os.kill(pid, 0)
 
 
 @pytest.mark.parametrize("jobs", [0, -1])
