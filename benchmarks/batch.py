@@ -34,11 +34,13 @@ from sklearn.exceptions import ConvergenceWarning
 
 from benchmarks.batch_learners import learners, runs
 from benchmarks.batch_tables import Row, equal_errors, tables
+from benchmarks.clear_errors import clear_errors
 from benchmarks.document import write_between
 from learning.relations.relation_learning import learn_relations
 from learning.sampling.lattice import lattice_samples
 from learning.sampling.sampling_region import SamplingRegion
 from symbolic.domain import FundamentalDomain
+from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup, identity
 from symbolic.robots import load_robot
@@ -179,7 +181,16 @@ def measure(name: str, seeds: int, noise_degrees: float, quick: bool) -> list[Ro
 
 
 def run(names: Sequence[str], seeds: int, noises: Sequence[float], quick: bool) -> list[Row]:
-    """All rows."""
+    """All rows.
+
+    Raises
+    ------
+    InputError
+        For a robot that no plan names.
+    """
+    for name in names:
+        if name not in SAMPLES:
+            raise InputError("command line", "robots", name, ", ".join(SAMPLES))
     return [
         row
         for noise in noises
@@ -188,7 +199,9 @@ def run(names: Sequence[str], seeds: int, noises: Sequence[float], quick: bool) 
     ]  # fmt: skip
 
 
-def main() -> None:
+@clear_errors
+def main() -> int:
+    """Measure and print the tables, or write them into their page."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("robots", nargs="*", default=list(SAMPLES), help="arms, all by default")
     parser.add_argument("--json", action="store_true", help="write JSON instead of tables")
@@ -204,12 +217,13 @@ def main() -> None:
     if options.json:
         found = {"rows": [asdict(r) for r in rows], "equal": equal_errors(rows), "minutes": minutes}
         print(json.dumps(found, indent=1))
-        return
+        return 0
     text = tables(rows) + f"\n\nMeasured in {minutes:.1f} minutes on one core."
     print(text)
     if options.write:
         write_between(PAGE, "batch", text)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

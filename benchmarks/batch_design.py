@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -20,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.clear_errors import clear_errors
 from benchmarks.document import write_between
 from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.trigonometric import EquivariantTrigonometric
@@ -122,7 +124,9 @@ def table(names: list[str], seeds: int) -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
+@clear_errors
+def main() -> int:
+    """Measure and print the table, or write it into its page."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("robots", nargs="*", default=["2r", "3r", "ur5"])
     parser.add_argument("--seeds", type=int, default=30)
@@ -132,7 +136,8 @@ def main() -> None:
     print(text)
     if options.write:
         write_between(PAGE, "design", text)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -34,6 +34,7 @@ import numpy as np
 import pinocchio as pin
 import sympy
 
+from benchmarks.clear_errors import clear_errors
 from benchmarks.time_limit import OutOfTimeError, at_most
 from benchmarks.urdf_arms import Subject, subjects
 from symbolic.gravity import GravityModel
@@ -217,7 +218,9 @@ def table(rows: list[dict[str, Any]]) -> str:
     return "\n".join(f"| {line} |" for line in lines)
 
 
-def main() -> None:
+@clear_errors
+def main() -> int:
+    """Measure and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("robots", nargs="*", help="names of arms, all by default")
     parser.add_argument("--json", action="store_true", help="write JSON instead of a table")
@@ -234,7 +237,8 @@ def main() -> None:
         if not options.robots:
             rows.append(measure_parametric(name, tree, options.repeats))
     print(json.dumps(rows, indent=1) if options.json else table(rows))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

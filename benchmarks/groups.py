@@ -24,6 +24,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
+from benchmarks.clear_errors import clear_errors
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.potential import derive_potential
@@ -70,6 +71,7 @@ def measure(name: str, turns: int) -> dict[str, Any]:
     }
 
 
+@clear_errors
 def main() -> int:
     """Print the table; return 1 if the two disagree."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])

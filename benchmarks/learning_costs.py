@@ -34,6 +34,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from sklearn.exceptions import ConvergenceWarning
 
+from benchmarks.clear_errors import clear_errors
 from benchmarks.learning_contests import (
     Bench,
     Contestant,
@@ -158,7 +159,9 @@ def table(rows: list[Row], unit: str) -> str:
     return "\n".join(f"| {line} |" for line in lines)
 
 
-def main() -> None:
+@clear_errors
+def main() -> int:
+    """Measure and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("robots", nargs="*", default=list(ROBOTS), help="arms, all by default")
     parser.add_argument("--json", action="store_true", help="write JSON instead of tables")
@@ -181,12 +184,13 @@ def main() -> None:
                 {title: [asdict(r) for r in rows] for title, rows in found.items()}, indent=1
             )
         )
-        return
+        return 0
     for title, rows in found.items():
         print(f"### {title}\n\n{NOTES[title].format(options=options)}\n")
         print(table(rows, "s" if title == "Batch fits" else "us"), end="\n\n")
     print(f"Measured in {seconds:.0f} s of processor time on one core.")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

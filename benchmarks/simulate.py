@@ -35,6 +35,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 import pinocchio as pin
 
+from benchmarks.clear_errors import clear_errors
 from benchmarks.compiled_aba import time_compiled_aba
 from learning.arm import OutcomeKind
 from learning.recordings.recorded_simulation import RecordedSimulation
@@ -302,7 +303,9 @@ def beside(value: float | None, demanded: float | None, relation: str) -> str:
     return f"{value:.3g}" + (f" ({relation} {demanded:g})" if demanded else "")
 
 
-def main() -> None:
+@clear_errors
+def main() -> int:
+    """Measure and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("robots", nargs="*", default=list(ROBOTS), help="arms, all by default")
     parser.add_argument("--json", action="store_true", help="write JSON instead of a table")
@@ -318,7 +321,8 @@ def main() -> None:
         print(json.dumps(rows + ([sequence] if sequence else []), indent=1))
     else:
         print(table(rows, sequence))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

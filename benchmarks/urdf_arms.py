@@ -9,6 +9,7 @@ from xml.etree.ElementTree import SubElement, tostring
 
 from defusedxml import ElementTree
 
+from symbolic.errors import InputError
 from symbolic.robots import Robot, builtin_robots, load_robot
 
 EXAMPLE_ROBOTS = {
@@ -28,15 +29,25 @@ class Subject:
 
 
 def subjects(names: list[str], folder: Path) -> list[Subject]:
-    """Return the arms asked for, all by default; writes URDF files to ``folder``."""
+    """Return the arms asked for, all by default; writes URDF files to ``folder``.
+
+    Raises
+    ------
+    InputError
+        For a name that no arm has here.
+    """
     built_in = Path(sys.modules["symbolic.robots"].__file__ or "").parent / "robot_files"
     files = {arm.name: built_in / f"{arm.name}.urdf" for arm in builtin_robots()}
     installed = example_robots()
     if installed is not None:
         files |= {name: installed / path for name, path in EXAMPLE_ROBOTS.items()}
+    files = {name: path for name, path in files.items() if path.is_file()}
+    for name in names:
+        if name not in files:
+            raise InputError("command line", "robots", name, ", ".join(files))
     found = []
     for name, path in files.items():
-        if (not names or name in names) and path.is_file():
+        if not names or name in names:
             explicit = folder / f"{name}.urdf"
             explicit.write_text(with_origins(path.read_text()))
             found.append(Subject(name, load_robot(path), explicit))

@@ -2,6 +2,7 @@
 
 import pytest
 
+from benchmarks import batch, derive, groups
 from benchmarks.groups import measure
 from symbolic.errors import InputError
 
@@ -16,3 +17,14 @@ def test_both_ways_find_the_same():
 def test_free_joints_are_refused():
     with pytest.raises(InputError, match=r"ur5.*free"):
         measure("ur5", 1)
+
+
+@pytest.mark.parametrize("benchmark", [batch, derive, groups])
+def test_an_unknown_robot_is_refused_in_one_line(benchmark, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["benchmark", "no-such-arm"])
+    assert benchmark.main() == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert error.count("\n") == 1
+    assert "no-such-arm" in error
+    assert "2r" in error

@@ -17,7 +17,7 @@ from isotorque.cli.options import (
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, say
-from isotorque.cli.run_options import LearnerName, NMin, Samples, Symmetries
+from isotorque.cli.run_options import Confirm, LearnerName, NMin, Samples, Symmetries
 
 
 def run(
@@ -27,6 +27,7 @@ def run(
     learner: LearnerName = None,
     symmetries: Symmetries = "learned",
     n_min: NMin = 2,
+    confirm: Confirm = 0,
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
     settle: Settle = "finished",
@@ -55,7 +56,7 @@ def run(
     )
     learner = default_learner(DIRECTIONS) if learner is None else learner
     samples = default_samples(DIRECTIONS, learner) if samples is None else samples
-    options = RunOptions(robot, arm, n_min, samples, learner, symmetries)
+    options = RunOptions(robot, arm, n_min, samples, learner, symmetries, confirm=confirm)
     output_directory(out)
     with progress_bars(quiet) as progress:
         outcome = run_experiment(options, out, progress)

@@ -36,6 +36,8 @@ NMin = Annotated[
 Confirm = Annotated[
     int,
     typer.Option(
-        "--confirm", min=0, help="Torques at the end, chosen to say most about the relations."
+        "--confirm",
+        min=0,
+        help="Torques at the end of the discovery, chosen to say most about the relations.",
     ),
 ]

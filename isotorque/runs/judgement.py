@@ -85,6 +85,7 @@ def _setup(run: RunOutcome) -> RunSetup:
     command += ["--physics", options.arm.physics, "--engine", options.arm.engine]
     command += ["--settle", options.arm.settle] + ([] if options.arm.snap else ["--no-snap"])
     for option, value in (
+        ("--confirm", options.confirm),
         ("--angle-noise", options.arm.angle_noise),
         ("--torque-noise", options.arm.torque_noise),
         ("--encoder-step", options.arm.encoder_step),

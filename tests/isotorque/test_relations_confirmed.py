@@ -55,6 +55,13 @@ def test_learning_goes_on_from_it(confirmed, capsys):
     assert (code, document["samples"]) == (0, 20)
 
 
+def test_a_run_makes_the_same_discovery(confirmed, tmp_path, capsys):
+    short = ["--out", tmp_path, "--samples", 20]
+    _, document = run(capsys, "run", "2r", "--confirm", 4, *short, *NOISE)
+    assert motions(tmp_path) == motions(confirmed)
+    assert "--confirm 4" in document["setup"]["command"]
+
+
 def test_fewer_than_none_is_refused(tmp_path, capsys):
     assert status(["discover", "2r", "--out", str(tmp_path), "--confirm", "-1"]) == 2
     assert "--confirm" in capsys.readouterr().err
