@@ -1,14 +1,28 @@
+from unittest.mock import patch
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from learning.static_torques.growing_points import GrowingPoints
+from learning.static_torques import growing_points
+from learning.static_torques.growing_points import SCANNED, GrowingPoints
 from symbolic.errors import InputError
 
 
-@given(st.integers(0, 2**32 - 1), st.integers(1, 3), st.integers(1, 300), st.floats(0, 0.9))
-def test_nearest_is_what_brute_force_finds(seed, dimension, count, removals):
+@given(
+    st.integers(0, 2**32 - 1),
+    st.integers(1, 3),
+    st.integers(1, 300),
+    st.floats(0, 0.9),
+    st.sampled_from([0, 300, SCANNED]),  # a tree, first a scan and then a tree, a scan
+)
+def test_nearest_is_what_brute_force_finds(seed, dimension, count, removals, scanned):
+    with patch.object(growing_points, "SCANNED", scanned):
+        check_nearest(seed, dimension, count, removals)
+
+
+def check_nearest(seed, dimension, count, removals):
     rng = np.random.default_rng(seed)
     points, alive = GrowingPoints(dimension), {}
     for step in range(count):
@@ -35,6 +49,7 @@ def test_nearest_is_what_brute_force_finds(seed, dimension, count, removals):
 
 
 def test_tree_is_rebuilt_only_when_it_has_grown(monkeypatch):
+    monkeypatch.setattr(growing_points, "SCANNED", 0)
     built = []
     original = GrowingPoints._build_tree
     monkeypatch.setattr(
@@ -48,6 +63,24 @@ def test_tree_is_rebuilt_only_when_it_has_grown(monkeypatch):
     # at most once per 33 additions, and per growth by an eighth
     assert len(built) <= 60
     assert sum(built) <= 12 * 4000
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 7))
+def test_scan_and_tree_give_the_same_distances_bit_for_bit(seed, dimension):
+    rng = np.random.default_rng(seed)
+    points = GrowingPoints(dimension)
+    for point in rng.normal(size=(200, dimension)):
+        points.append(point)
+    queries = rng.normal(size=(9, dimension))
+    scanned = points.nearest(queries)
+    with patch.object(growing_points, "SCANNED", 0):
+        searched = points.nearest(queries)
+    assert len(points) * queries.size <= SCANNED
+    assert np.array_equal(scanned[1], searched[1])
+    if dimension <= 3:  # beyond, sums may be added up in another order
+        assert np.array_equal(scanned[0], searched[0])
+    else:
+        np.testing.assert_allclose(scanned[0], searched[0], rtol=1e-14)
 
 
 def test_queries_of_another_dimension_are_refused():
