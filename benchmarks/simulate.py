@@ -25,7 +25,6 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -33,10 +32,16 @@ from typing import Any
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
-import pinocchio as pin
 
 from benchmarks.clear_errors import clear_errors
 from benchmarks.compiled_aba import time_compiled_aba
+from benchmarks.simulation_peers import (
+    MUJOCO_STEP,
+    check,
+    mujoco_settle,
+    near_starts,
+    plain_settle,
+)
 from learning.arm import OutcomeKind
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
@@ -58,78 +63,7 @@ DEMANDED_STEP = {2: 15.0, 7: 6.0}
 DEMANDED_SEQUENCE = 6.0
 DEMANDED_RECORDED = 10.0
 SEQUENCE = 54_000
-PLAIN_STEP = 1e-3
-MUJOCO_STEP = 5e-3
-DISTANCE = 0.1
 STEP_TURNS = 40
-
-
-@dataclass(frozen=True)
-class Starts:
-    """Where samples start and what they settle under."""
-
-    q: np.ndarray
-    torques: np.ndarray
-
-
-def near_starts(arm: SimulatedArm, count: int) -> Starts:
-    """Draw stable equilibria and starts 0.1 rad away, all of which settle."""
-    rng = np.random.default_rng(0)
-    equations = arm.equations
-    q, torques = np.empty((0, arm.n)), np.empty((0, arm.n))
-    spread = 0.5
-    while len(q) < count:
-        targets = arm.home + rng.uniform(-spread, spread, (4 * count, arm.n))
-        steps = rng.normal(size=targets.shape)
-        starts = targets + DISTANCE * steps / np.linalg.norm(steps, axis=1, keepdims=True)
-        inside = ((arm.limits[:, 0] < starts) & (starts < arm.limits[:, 1])).all(axis=1)
-        held = np.array([equations.gravity_torque(x) for x in targets])
-        ends = arm.settle_each(starts, held)
-        settled = np.array([kind is OutcomeKind.SETTLED for kind in ends.kinds])
-        # At the target itself, not at another equilibrium under the same torque.
-        near = np.linalg.norm(ends.q - targets, axis=1) < 2.0 * DISTANCE
-        keep = inside & settled & near
-        q, torques = np.vstack([q, starts[keep]]), np.vstack([torques, held[keep]])
-    return Starts(q[:count], torques[:count])
-
-
-def plain_settle(
-    arm: SimulatedArm, model: pin.Model, data: pin.Data, q: np.ndarray, torque: np.ndarray
-) -> np.ndarray:
-    """Settle with Euler steps: what one writes first."""
-    rule, damping = arm.rule, arm.damping
-    low, high = arm.limits.T
-    q, v = q.copy(), np.zeros(arm.n)
-    quiet = 0.0
-    for _ in range(int(rule.time_limit / PLAIN_STEP)):
-        a = pin.aba(model, data, q, v, torque - damping * v)
-        v += PLAIN_STEP * a
-        q += PLAIN_STEP * v
-        if (q < low).any() or (q > high).any():
-            break
-        rests = abs(v).max() < rule.velocity and abs(a).max() < rule.acceleration
-        quiet = quiet + PLAIN_STEP if rests else 0.0
-        if quiet >= rule.dwell:
-            break
-    return q
-
-
-def mujoco_settle(
-    arm: SimulatedArm, model: Any, data: Any, q: np.ndarray, torque: np.ndarray
-) -> np.ndarray:
-    """Settle with MuJoCo's steps."""
-    rule = arm.rule
-    mujoco.mj_resetData(model, data)
-    data.qpos[:] = q
-    data.qfrc_applied[:] = torque
-    quiet = 0.0
-    for _ in range(int(rule.time_limit / MUJOCO_STEP)):
-        mujoco.mj_step(model, data)
-        rests = abs(data.qvel).max() < rule.velocity and abs(data.qacc).max() < rule.acceleration
-        quiet = quiet + MUJOCO_STEP if rests else 0.0
-        if quiet >= rule.dwell:
-            break
-    return data.qpos.copy()
 
 
 def timed(work: Callable[[], Any], samples: int) -> float:
@@ -200,24 +134,6 @@ def measure(name: str, turns: int, samples: int) -> dict[str, Any]:
         "step_vs_aba": median_ratio(step, dynamics),
         "step_vs_aba_demanded": DEMANDED_STEP.get(robot.n),
     }
-
-
-def check(
-    arm: SimulatedArm,
-    model: pin.Model,
-    data: pin.Data,
-    starts: Starts,
-    ends: np.ndarray,
-    few: slice,
-) -> None:
-    """Make sure that the plain loop ends where the compiled engine does."""
-    for q, torque, end in zip(starts.q[few], starts.torques[few], ends[few], strict=True):
-        torque_there = pin.computeGeneralizedGravity(
-            model, data, plain_settle(arm, model, data, q, torque)
-        )
-        there = pin.computeGeneralizedGravity(model, data, end)
-        if abs(torque_there - there).max() > 0.05:
-            raise AssertionError(f"plain loop and engine differ: {torque_there}, {there}")
 
 
 def median_ratio(above: list[float], below: list[float]) -> float | None:

@@ -1,122 +1,24 @@
-"""Tests of the explorations on an ideal planar arm that offers only apply, go_home and q."""
+"""Constrained direction sampling, and what all explorations share, on an ideal planar arm."""
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.arm import LimitHit, Settled
+from learning.arm import Settled
 from learning.exploration.explored_share import ExploredShare
-from learning.exploration.strategies import (
-    ConstrainedDirectionSampling,
-    ConstrainedGoalBabbling,
-    DirectionSampling,
-    ExplorationSettings,
-    GoalBabbling,
-    GuidedDirectionSampling,
-    MotorBabbling,
-)
+from learning.exploration.strategies import DirectionSampling, ExplorationSettings
 from learning.exploration.targets import Phase
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
 from symbolic.errors import InputError
+from tests.learning.exploration.explored_arm import (
+    Cell,
+    Recorder,
+    ScriptedArm,
+    TrueStaticTorques,
+    constrained,
+    rmse,
+)
 from tests.learning.learners import planar_arm
-
-RANGE = [24.5, 6.2]
-HOME = planar_arm.torque([-np.pi / 4, -np.pi / 4])[0]
-
-
-class Cell:
-    """The fundamental domain in which the arm can hold itself."""
-
-    def contains(self, q):
-        return bool(-np.pi / 2 <= q[0] <= 0 and -np.pi <= q[0] + q[1] <= 0)
-
-    def sample(self, rng, count):
-        sums = np.stack([rng.uniform(-np.pi / 2, 0, count), rng.uniform(-np.pi, 0, count)], axis=1)
-        return np.stack([sums[:, 0], sums[:, 1] - sums[:, 0]], axis=1)
-
-
-class TrueStaticTorques:
-    """The torques the ideal arm can hold below the horizontal, known exactly."""
-
-    def __init__(self, margin=0.999):
-        self.margin = margin
-        self.added, self.marked = [], []
-
-    def _ratios(self, torque):
-        return np.array([(torque[0] - torque[1]) / planar_arm.UPPER, torque[1] / planar_arm.LOWER])
-
-    def contains(self, torque):
-        return bool(np.abs(self._ratios(torque)).max() <= self.margin)
-
-    def nearest(self, torque):
-        first, second = np.clip(self._ratios(torque), -self.margin, self.margin)
-        lower = planar_arm.LOWER * second
-        return np.array([planar_arm.UPPER * first + lower, lower])
-
-    def add(self, torque):
-        self.added.append(torque)
-
-    def mark_inadmissible(self, torque):
-        self.marked.append(torque)
-
-
-class ScriptedArm:
-    """Answers with the given configurations, whatever is applied; None means a limit."""
-
-    def __init__(self, answers):
-        self.answers = iter(answers)
-        self.q = np.zeros(2)
-        self.torques = []
-
-    def go_home(self):
-        self.q = np.zeros(2)
-
-    def apply(self, torque):
-        self.torques.append(torque)
-        answer = next(self.answers)
-        if answer is None:
-            hit = LimitHit(self.q, torque, 1.0)
-            self.go_home()
-            return hit
-        self.q = np.array(answer, dtype=float)
-        return Settled(self.q, torque, 1.0)
-
-
-class Recorder:
-    """A learner that only takes notes and predicts zero."""
-
-    def __init__(self):
-        self.samples = []
-
-    def partial_fit(self, X, y, sample_weight=None):
-        assert X.shape == y.shape == (1, 2)
-        self.samples.append((X[0], y[0], float(sample_weight[0])))
-
-    def predict(self, X):
-        return np.zeros((len(X), 2))
-
-
-def constrained(seed=0, learner=None, arm=None, **options):
-    """A constrained direction sampling of the ideal arm."""
-    rng = np.random.default_rng(seed)
-    options = {"home_torque": HOME, "torque_range": RANGE, "domain": Cell()} | options
-    options.setdefault("static_torques", TrueStaticTorques())
-    if learner is None:
-        learner = LocalLinearMap(0.25, group=planar_arm.group(), inner_iterations=None, replay=2)
-    return (
-        ConstrainedDirectionSampling(
-            arm if arm is not None else planar_arm.IdealArm(), learner, rng, **options
-        ),
-        learner,
-    )
-
-
-def rmse(learner, seed=99):
-    """Error on the whole torus [N m]."""
-    dense = np.random.default_rng(seed).uniform(-np.pi, np.pi, (1500, 2))
-    return float(np.sqrt(np.mean((learner.predict(dense) - planar_arm.torque(dense)) ** 2)))
 
 
 @settings(max_examples=8, deadline=None)
@@ -211,29 +113,6 @@ def test_limits_are_marked_and_not_learned():
     assert exploration.counts.inadmissible == 1
 
 
-def test_guided_sampling_visits_every_target_and_measures_there():
-    """Placed and held: outcomes are the targets, labels the measured torques, nothing is lost."""
-
-    class Guided(planar_arm.IdealArm):
-        def place(self, q):
-            assert np.abs(q).max() <= np.pi
-            self.q = np.array(q)
-
-        def hold(self):
-            return Settled(self.q.copy(), planar_arm.torque(self.q)[0], 0.0)
-
-    learner = RecursiveLeastSquares(group=planar_arm.group())
-    exploration = GuidedDirectionSampling(
-        Guided(), learner, np.random.default_rng(0), domain=Cell(), torque_range=RANGE
-    )
-    steps = list(exploration.steps(100))
-    for step in steps[1:]:
-        assert np.abs(step.outcome.q - step.target).max() < 1e-12
-        assert Cell().contains(step.target)
-        assert not step.projected
-    assert rmse(learner) < 0.0053
-
-
 def test_home_visits_are_single_steps():
     """With probability 1 every target is home; with 0 none is; in between about as many."""
     share = {}
@@ -259,23 +138,6 @@ def test_learns_the_torque_map_and_sees_the_whole_domain():
     assert shares[-1] > 0.95
     assert rmse(learner) < 0.1
     assert exploration.counts.inadmissible == 0
-
-
-def test_without_constraints_torques_are_inadmissible_and_learned():
-    """The original runs into limits and its model suffers (Fig. 7)."""
-    learner = LocalLinearMap(0.25, group=planar_arm.group(), inner_iterations=None)
-    exploration = DirectionSampling(
-        planar_arm.IdealArm(),
-        learner,
-        np.random.default_rng(0),
-        torque_range=RANGE,
-        home_torque=HOME,
-        settings=ExplorationSettings(learn_inadmissible=True),
-    )
-    steps = list(exploration.steps(600))
-    assert exploration.counts.inadmissible > 0.1 * len(steps)
-    assert exploration.counts.projected == 0
-    assert rmse(learner) > 0.5
 
 
 def test_stops_when_the_error_stays_low():
@@ -310,63 +172,6 @@ def test_the_same_seed_gives_the_same_exploration_in_one_go_or_two():
     first = [s.torque for s in whole.steps(120)]
     second = [s.torque for s in pieces.steps(50)] + [s.torque for s in pieces.steps(70)]
     assert np.array_equal(first, second)
-
-
-def test_goal_babbling_walks_to_its_goals():
-    """Targets lie on straight paths of equal steps between home and goals."""
-    goals = np.array([[-1.2, -0.2], [-0.3, -2.0]])
-    learner = LocalLinearMap(0.25, group=planar_arm.group(), inner_iterations=None, replay=2)
-    exploration = ConstrainedGoalBabbling(
-        planar_arm.IdealArm(),
-        learner,
-        np.random.default_rng(0),
-        goals,
-        static_torques=TrueStaticTorques(),
-        domain=Cell(),
-        torque_range=RANGE,
-        home_torque=HOME,
-        settings=ExplorationSettings(step_width=0.1, home_probability=0.0),
-    )
-    targets = np.array([s.target for s in exploration.steps(300)])
-    assert np.linalg.norm(np.diff(targets, axis=0), axis=1).max() < 0.1 + 1e-9
-    for goal in goals:
-        assert np.linalg.norm(targets - goal, axis=1).min() < 1e-12
-    reached = learner.predict(goals) - planar_arm.torque(goals)
-    assert np.abs(reached).max() < 0.2
-
-
-def test_goals_outside_the_domain_are_refused():
-    with pytest.raises(InputError, match="goal"):
-        list(
-            ConstrainedGoalBabbling(
-                planar_arm.IdealArm(),
-                Recorder(),
-                np.random.default_rng(0),
-                [[1.0, 1.0]],
-                static_torques=TrueStaticTorques(),
-                domain=Cell(),
-                torque_range=RANGE,
-                home_torque=HOME,
-            ).steps(1)
-        )
-
-
-def test_unconstrained_goal_babbling_and_motor_babbling_command_what_they_like():
-    """No set of static torques: nothing is projected; motor babbling covers the torque box."""
-    for make in (
-        lambda **o: GoalBabbling(
-            planar_arm.IdealArm(), Recorder(), np.random.default_rng(0), [[-1.0, -1.0]], **o
-        ),
-        lambda **o: MotorBabbling(planar_arm.IdealArm(), Recorder(), np.random.default_rng(0), **o),
-    ):
-        exploration = make(torque_range=RANGE, home_torque=HOME)
-        steps = list(exploration.steps(400))
-        assert exploration.counts.projected == 0
-        assert exploration.counts.commands == 400
-    torques = np.array([s.torque for s in steps[1:]])
-    assert all(s.phase is Phase.MOTOR and s.target is None for s in steps[1:])
-    assert np.abs(torques).max(axis=0) == pytest.approx(RANGE, rel=0.05)
-    assert 0.2 < exploration.counts.inadmissible / 400 < 0.9
 
 
 def test_free_joints_are_left_alone():
