@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class InputError(ValueError):
     """Input that cannot be used, said in one line.
@@ -19,7 +21,9 @@ class InputError(ValueError):
 
     Notes
     -----
-    The command line prints the message after ``error: `` and ends with exit status 2.
+    The command line prints the message after ``error: `` and ends with exit status 2. Characters
+    that a terminal does not show are escaped (`visible`), so the message is one line whatever a
+    file holds. Errors come back from other processes as they were raised.
 
     Examples
     --------
@@ -35,4 +39,39 @@ class InputError(ValueError):
         shown = " ".join(str(value).split())
         if len(shown) > 120:
             shown = shown[:117] + "..."
-        super().__init__(f"{self.where}: {field} is {shown}; accepted: {accepted}")
+        super().__init__(visible(f"{self.where}: {field} is {shown}; accepted: {accepted}"))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # exceptions are pickled as a call with their message, which is not what classes here take
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(kind: type[InputError], args: tuple[Any, ...], state: dict[str, Any]) -> InputError:
+    error = kind.__new__(kind, *args)
+    error.__dict__.update(state)
+    return error
+
+
+def visible(text: str) -> str:
+    r"""Return a text with control, bidirectional and other unprintable characters escaped.
+
+    Parameters
+    ----------
+    text
+        Any text, such as the name of a joint or of a file.
+
+    Returns
+    -------
+    str
+        One line that a terminal shows from left to right as it is.
+
+    Examples
+    --------
+    >>> print(visible("a\nb"), visible("élbow"))
+    a\nb élbow
+    """
+    if text.isprintable():
+        return text
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
+    )

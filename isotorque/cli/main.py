@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from typing import NoReturn
 
@@ -23,7 +22,9 @@ from isotorque.cli import (
     verify,
 )
 from isotorque.cli import run as run_command
-from symbolic.errors import InputError
+from isotorque.cli.help_text import LiteralHelp
+from isotorque.cli.streams import patient_streams
+from symbolic.errors import InputError, visible
 
 # typer may bring click along under a private name: take the class from typer's public one
 _ClickException: type[Exception] = typer.BadParameter.__mro__[2]
@@ -39,19 +40,22 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command("robots")(robots.robots)
-app.command("derive")(derive.derive)
-app.command("symmetries")(symmetries.symmetries)
-app.command("domain")(domain.domain)
-app.command("simulate")(simulate.simulate)
-app.command("discover")(discover.discover)
-app.command("relations")(relations.relations)
-app.command("learn")(learn.learn)
-app.command("verify")(verify.verify)
-app.command("run")(run_command.run)
-app.command("paper")(paper.paper)
-app.command("sweep")(sweep.sweep)
-app.command("export")(export.export)
+for name, command in (
+    ("robots", robots.robots),
+    ("derive", derive.derive),
+    ("symmetries", symmetries.symmetries),
+    ("domain", domain.domain),
+    ("simulate", simulate.simulate),
+    ("discover", discover.discover),
+    ("relations", relations.relations),
+    ("learn", learn.learn),
+    ("verify", verify.verify),
+    ("run", run_command.run),
+    ("paper", paper.paper),
+    ("sweep", sweep.sweep),
+    ("export", export.export),
+):
+    app.command(name, cls=LiteralHelp)(command)
 
 
 def run(arguments: list[str] | None = None) -> NoReturn:
@@ -65,6 +69,11 @@ def run(arguments: list[str] | None = None) -> NoReturn:
 
 def status(arguments: list[str]) -> int:
     """Run one command and return its exit status."""
+    with patient_streams():
+        return _status(arguments)
+
+
+def _status(arguments: list[str]) -> int:
     try:
         code = app(args=arguments, prog_name="isotorque", standalone_mode=False)
         sys.stdout.flush()
@@ -85,9 +94,6 @@ def status(arguments: list[str]) -> int:
         if isinstance(error.__cause__, KeyboardInterrupt):
             return _interrupted()
         raise
-    except BrokenPipeError:  # the reader of our output went away, e.g. `| head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
     except OSError as error:
         return _refuse(f"{error.filename or 'operating system'}: {error.strerror or error}")
     if code == INTERRUPTED:  # what typer makes of Ctrl-C
@@ -101,5 +107,5 @@ def _interrupted() -> int:
 
 
 def _refuse(message: str) -> int:
-    print(f"error: {message}", file=sys.stderr)
+    print(f"error: {visible(message)}", file=sys.stderr)
     return 2
