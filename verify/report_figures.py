@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from verify.figures.configurations import domain_map, explored_map
 from verify.figures.learning_curves import learning_curves
@@ -13,6 +12,9 @@ from verify.figures.level_sets import level_set_map, stick_figure
 from verify.figures.torques import joint_trajectories, static_torque_map, torque_profiles
 from verify.run_parts import LevelSetReport
 from verify.run_report import RunReport
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)

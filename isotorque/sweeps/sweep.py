@@ -8,10 +8,9 @@ import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from threadpoolctl import threadpool_limits
 
 from isotorque.files import output_directory, write_whole
@@ -23,6 +22,9 @@ from isotorque.sweeps.sweep_table import SweepRun
 from learning.recordings.run_info import software_versions
 from verify.figures.learning_curves import LearningCurve, curve_panels
 from verify.figures.style import save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Progress = Callable[[str, int, int, str], None]
 COLUMNS = (

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from numba import config, njit
+from numba import njit
+
+from symbolic.compiled import cache_folder, cache_in, source_folder
 
 _SHARED = ("kernel.py", "chain.py", "plant.py", "step_control.py")
 
 
 def kernel(function: Callable[..., Any]) -> Any:
-    """Compile a function with numba, caching the result on disk beside its source.
+    """Compile a function with numba, caching the result on disk.
 
     Parameters
     ----------
@@ -31,8 +32,8 @@ def kernel(function: Callable[..., Any]) -> Any:
     -----
     Numba renews a cached function only when the function's own file changes, though it contains
     the code and the constants of other files. The cache is therefore kept in a folder named for
-    the contents of all files that kernels are made of; where that folder cannot be written,
-    numba's own place is used. References are not counted (``_nrt=False``): counting the arrays of
+    the contents of all files that kernels are made of, where `symbolic.compiled` keeps the
+    others. References are not counted (``_nrt=False``): counting the arrays of
     a call costs as much as the dynamics of a two-joint arm, and nothing is created or freed.
     """
     return _compiled(function, "never")
@@ -47,16 +48,14 @@ def kernel_part(function: Callable[..., Any]) -> Any:
 
 
 def _compiled(function: Callable[..., Any], inline: str) -> Any:
-    folder = Path(function.__code__.co_filename).resolve().parent
-    previous = config.CACHE_DIR
-    if os.access(folder, os.W_OK):
-        config.CACHE_DIR = str(folder / "__pycache__" / f"kernels-{_fingerprint(folder)}")
-    try:
+    folder = source_folder(function)
+    place = cache_folder(folder)
+    if place is not None:
+        place = place / f"kernels-{_fingerprint(folder)}"
+    with cache_in(place) as kept:
         # No fastmath: with it the last bits depend on how functions happened to be compiled
         # together, and a process that compiles ends otherwise than one that loads the cache.
-        return njit(cache=True, error_model="numpy", inline=inline, _nrt=False)(function)
-    finally:
-        config.CACHE_DIR = previous
+        return njit(cache=kept, error_model="numpy", inline=inline, _nrt=False)(function)
 
 
 @cache

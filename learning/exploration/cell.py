@@ -6,10 +6,10 @@ import itertools
 from typing import Any, Protocol
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from learning.symmetry_use import SymmetryCoordinates
+from symbolic.compiled import compiled
 
 Array = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ class ExplorationCell:
         return np.asarray((z + self._turns) @ self._normals.T - self._bounds)
 
 
-@njit(cache=True)
+@compiled
 def _project(normals, bounds, point):
     """Nearest point of a polytope by Dykstra's cyclic projections (for half-spaces: Hildreth's)."""
     faces, rank = normals.shape

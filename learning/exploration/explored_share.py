@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from symbolic.compiled import compiled
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ class ExploredShare:
             )
 
 
-@njit(cache=True)
+@compiled
 def _strike(points, remaining, images, isometry, radius):
     """Swap the points near an image behind the first ``remaining`` ones; how many remain."""
     rank = points.shape[1]

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
 
+from symbolic.compiled import compiled
 
-@njit(cache=True)
+
+@compiled
 def cell_step(grid, y, axis):
     """Cell of the wrapped y along one axis, 0 to cells - 1."""
     count = grid.cells[axis]
     return min(max(int(np.floor((y[axis] + np.pi) * (count / (2 * np.pi)))), 0), count - 1)
 
 
-@njit(cache=True)
+@compiled
 def enter(grid, entries, number, y):
     """Enter point ``number`` at the wrapped y with all its images; the new number of entries."""
     rank = y.size
@@ -56,7 +57,7 @@ def enter(grid, entries, number, y):
         turn[axis] += 1
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def find_near(grid, y, found, offset, squared):
     """All images within the search radius of the wrapped y.
 
@@ -94,7 +95,7 @@ def find_near(grid, y, found, offset, squared):
     return count, least if count else np.inf
 
 
-@njit(cache=True)
+@compiled
 def find_far(grid, points, y, found, offset, squared):
     """Where ``find_near`` finds nothing: one image of each point, differences wrapped by component.
 
@@ -107,7 +108,7 @@ def find_far(grid, points, y, found, offset, squared):
     return scan_all(grid, points, y, limit, found, offset, squared)
 
 
-@njit(cache=True)
+@compiled
 def scan_all(grid, points, y, limit, found, offset, squared):
     """All of the first ``points`` points with a squared distance up to ``limit``; how many.
 

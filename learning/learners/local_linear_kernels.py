@@ -10,12 +10,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
 from numpy.typing import NDArray
 
 from learning.learners.cell_grid import CellGrid
 from learning.learners.cell_search import find_far, find_near
+from symbolic.compiled import compiled
 
 Array = NDArray[np.float64]
 
@@ -88,7 +88,7 @@ def make_scratch(grid: CellGrid, outputs: int) -> Scratch:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def exponential(x):
     """exp(x) for x from -60 to 0, to 1e-14 near 0 and a share of 1e-6 at -40.
 
@@ -110,7 +110,7 @@ def exponential(x):
     return series
 
 
-@njit(cache=True)
+@compiled
 def search(grid, counts, y, work):
     """Find the prototypes that matter at y; how many, and the least squared distance.
 
@@ -123,7 +123,7 @@ def search(grid, counts, y, work):
     return found, least
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def weigh(work, found, least, kernel):
     """Normalised responsibilities (Eq. 18), relative to the nearest so that none underflows."""
     squared, responsibility = work.squared, work.responsibility
@@ -138,7 +138,7 @@ def weigh(work, found, least, kernel):
         responsibility[e] *= total
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def blend(parameters, work, found, rank, rule):
     """The estimate of Eq. 18, into ``work.output``."""
     responsibility, offset, output = work.responsibility, work.offset, work.output
@@ -157,7 +157,7 @@ def blend(parameters, work, found, rank, rule):
         output[j] = sums[j]
 
 
-@njit(cache=True)
+@compiled
 def slope(parameters, work, found, rank, rule, jacobian):
     """Derivative of the estimate by ``L y``, shape (n, r), derivative of the weights included."""
     mean = np.zeros(len(rank))
@@ -180,7 +180,7 @@ def slope(parameters, work, found, rank, rule, jacobian):
                 )
 
 
-@njit(cache=True)
+@compiled
 def predict_batch(grid, counts, parameters, y, work, rule, result):
     """Estimates at the wrapped points y (m, r), into ``result`` (m, n)."""
     for s in range(y.shape[0]):
@@ -190,7 +190,7 @@ def predict_batch(grid, counts, parameters, y, work, rule, result):
         result[s] = work.output
 
 
-@njit(cache=True)
+@compiled
 def slope_batch(grid, counts, parameters, y, work, rule, result):
     """Derivatives of the estimate by ``L y`` at the points y (m, r), into ``result`` (m, n, r)."""
     for s in range(y.shape[0]):

@@ -6,14 +6,14 @@ Arguments as in ``local_linear_kernels``.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from learning.learners.cell_search import enter, find_near
 from learning.learners.local_linear_kernels import blend, search, slope, weigh
+from symbolic.compiled import compiled
 
 
-@njit(cache=True)
+@compiled
 def insert(grid, counts, parameters, y, torque, found, least, work, rule):
     """Add a prototype at y (Eq. 19, or Eq. 22 more than 2 d from all others)."""
     number = counts[0]
@@ -35,7 +35,7 @@ def insert(grid, counts, parameters, y, torque, found, least, work, rule):
     counts[0] = number + 1
 
 
-@njit(cache=True)
+@compiled
 def squared_features(work, found, rank, rule):
     """Squared length of the feature vector: the change of the estimate per unit step."""
     total = 0.0
@@ -57,7 +57,7 @@ def squared_features(work, found, rank, rule):
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def descend(parameters, work, found, torque, step, rank, rule):
     """One move of the parameters by ``step`` times error times features (Eq. 20, 21)."""
     responsibility, offset = work.responsibility, work.offset
@@ -76,7 +76,7 @@ def descend(parameters, work, found, torque, step, rank, rule):
                 parameters[p, j, 1 + k] += move * offset[e, k]
 
 
-@njit(cache=True, forceinline=True)
+@compiled(forceinline=True)
 def learn(parameters, work, found, torque, sample_weight, rank, rule):
     """Gradient steps on one sample whose estimate is in ``work``, in closed form if so ruled."""
     step = 2.0 * rule.rate * sample_weight
@@ -94,7 +94,7 @@ def learn(parameters, work, found, torque, sample_weight, rank, rule):
     descend(parameters, work, found, torque, step, rank, rule)
 
 
-@njit(cache=True)
+@compiled
 def update(grid, counts, parameters, y, torque, sample_weight, work, rule):
     """Learn that ``torque`` holds the wrapped point y: insert, then descend."""
     found, least = search(grid, counts, y, work)
@@ -106,7 +106,7 @@ def update(grid, counts, parameters, y, torque, sample_weight, work, rule):
     learn(parameters, work, found, torque, sample_weight, grid.axes, rule)
 
 
-@njit(cache=True, forceinline=True)
+@compiled(forceinline=True)
 def symmetric_copy(symmetries, q, torque, g, y, signed):
     """Coordinates, wrapped, and torque of copy g of a sample, into ``y`` and ``signed``."""
     basis, A_sat, d_sat, signs = symmetries
@@ -120,7 +120,7 @@ def symmetric_copy(symmetries, q, torque, g, y, signed):
         signed[j] = signs[g, j] * torque[j]
 
 
-@njit(cache=True)
+@compiled
 def remember(stored, memory_q, memory_torque, q, torque, draw):
     """Keep a sample for replay; when memory is full each one seen is kept equally likely."""
     slot = stored[0]
@@ -134,7 +134,7 @@ def remember(stored, memory_q, memory_torque, q, torque, draw):
         memory_torque[slot] = torque
 
 
-@njit(cache=True)
+@compiled
 def run(
     grid, parameters, symmetries, q, torque, weights, memory_q, memory_torque, stored, draws, work,
     rule, progress, y, signed,
@@ -177,7 +177,7 @@ def run(
     return False
 
 
-@njit(cache=True)
+@compiled
 def train(
     grid, counts, parameters, symmetries, q, torque, weights, memory_q, memory_torque, stored,
     draws, work, rule, progress,

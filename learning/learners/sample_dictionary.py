@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from symbolic.compiled import compiled
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
@@ -119,7 +119,7 @@ class SampleDictionary:
         self._distance = np.full((self.budget, 2), np.inf)
 
 
-@njit(cache=True)
+@compiled
 def _orbit_distances(points, size, images, isometry, distances):
     """Least squared distance from every point (size, r) to the images (G, r) of another."""
     rank = points.shape[1]
@@ -140,7 +140,7 @@ def _orbit_distances(points, size, images, isometry, distances):
         distances[p] = least
 
 
-@njit(cache=True)
+@compiled
 def _slot_for(points, size, budget, images, isometry, distance):
     """Where a new sample, given by its images (G, r), belongs."""
     if size < budget:
@@ -161,7 +161,7 @@ def _slot_for(points, size, budget, images, isometry, distance):
     return slot
 
 
-@njit(cache=True)
+@compiled
 def _note(nearest, distance, p, other, squared):
     """Point ``other`` lies at this squared distance from p: keep it if among the two nearest."""
     if squared < distance[p, 0]:
@@ -171,7 +171,7 @@ def _note(nearest, distance, p, other, squared):
         distance[p, 1], nearest[p, 1] = squared, other
 
 
-@njit(cache=True)
+@compiled
 def _settle_in(points, size, slot, y, A_sat, d_sat, isometry, nearest, distance):
     """Put y into the slot and keep every sample's two nearest neighbours right; the new size."""
     rank = y.size

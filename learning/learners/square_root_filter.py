@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+
+from symbolic.compiled import compiled
 
 Array = NDArray[np.float64]
 
@@ -75,7 +76,7 @@ class SquareRootFilter:
         return np.asarray(solve_triangular(self.factor, self.right, check_finite=False))
 
 
-@njit(cache=True)
+@compiled
 def _rotate(factor, right, row, targets):
     """Rotate the observation into the triangle; ``row`` and ``targets`` are used up."""
     features = row.size

@@ -13,12 +13,12 @@ well, so it is smooth on the torus. Joints with the same column of Y share their
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from learning.learners.cell_search import find_far, find_near
+from symbolic.compiled import compiled
 
 
-@njit(cache=True)
+@compiled
 def copies_of(symmetries, q, images):
     """Wrapped coordinates of all symmetric copies of q (n,), into ``images`` (G, r)."""
     basis, A_sat, d_sat = symmetries
@@ -35,7 +35,7 @@ def copies_of(symmetries, q, images):
             images[g, i] = value - 2 * np.pi * np.floor(value / (2 * np.pi) + 0.5)
 
 
-@njit(cache=True)
+@compiled
 def near_or_far(grid, counts, y, work, far):
     """What ``find_near`` finds at y, or ``find_far`` if so told."""
     if far:
@@ -43,7 +43,7 @@ def near_or_far(grid, counts, y, work, far):
     return find_near(grid, y, work.found, work.offset, work.squared)
 
 
-@njit(cache=True)
+@compiled
 def least_distance(grid, counts, images, work):
     """Squared distance from an orbit (G, r) to the nearest prototype."""
     least = np.inf
@@ -55,7 +55,7 @@ def least_distance(grid, counts, images, work):
     return least
 
 
-@njit(cache=True)
+@compiled
 def tied_features(grid, counts, images, signs, radius, kernel, work, features):
     """Features of one configuration, given its copies ``images`` (G, r).
 
@@ -100,7 +100,7 @@ def tied_features(grid, counts, images, signs, radius, kernel, work, features):
     features /= total
 
 
-@njit(cache=True)
+@compiled
 def tied_features_batch(grid, counts, symmetries, signs, q, radius, kernel, work, result):
     """Features of configurations q (m, n), into ``result`` (c, m, M (1 + r))."""
     images = np.empty((symmetries[1].shape[0], symmetries[1].shape[1]))

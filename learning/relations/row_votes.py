@@ -6,10 +6,10 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from learning.relations.torque_pairs import Pairs
+from symbolic.compiled import compiled
 from symbolic.relations import wrap
 
 Array = NDArray[np.float64]
@@ -194,7 +194,7 @@ def _centred(pairs: Pairs, A: Index, centres: Array, widths: Array) -> VotedRela
     return VotedRelation(A, offset, np.asarray(inliers))
 
 
-@njit(cache=True)
+@compiled
 def _windows(q_r, q_s, torque, torques, rows, widths, least_torques, most):
     """Best windows of every row: arrays of row, centre of the window, pairs in it.
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from symbolic.compiled import compiled
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
@@ -167,7 +167,7 @@ class GrowingPoints:
         return distances, indices
 
 
-@njit(cache=True)
+@compiled
 def _scan(store, present, end, queries):
     """Compare each query with every point present among the first ``end``."""
     distances = np.full(len(queries), np.inf)
