@@ -11,6 +11,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from symbolic.errors import InputError
+from symbolic.joint_limits import read_limits
 from symbolic.kinematic_tree import KinematicTree
 
 Array = NDArray[np.float64]
@@ -21,7 +22,6 @@ _BOUNDED = frozenset(
 _CONTINUOUS = frozenset(
     {"JointModelRUBX", "JointModelRUBY", "JointModelRUBZ", "JointModelRevoluteUnboundedUnaligned"}
 )
-_NO_LIMIT = 1e6  # rad; what is beyond means that there is no limit (1e16, the largest double)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class ArmBody:
     inertias : (n, 3, 3) array
         Rotational inertias about the centres of mass, in the joints' frames [kg m^2].
     limits : (n, 2) array
-        Joint limits [rad].
+        Joint limits [rad], infinite where there is none.
     efforts, velocities : (n,) arrays
         Largest torques [N m] and speeds [rad/s]; huge where there is no limit.
     damping, friction : (n,) arrays
@@ -217,33 +217,8 @@ def _joint_model(axis: Array) -> pin.JointModel:
 
 
 def _limits(model: pin.Model, joint: int) -> tuple[float, float]:
-    """Return a joint's limits [rad], -pi and pi where it has none."""
+    """Return a joint's limits [rad], infinite where it has none."""
     kind = model.joints[joint]
     if kind.shortname() in _CONTINUOUS:
-        return -math.pi, math.pi
-    return limits_or_half_turns(
-        model.lowerPositionLimit[kind.idx_q], model.upperPositionLimit[kind.idx_q]
-    )
-
-
-def limits_or_half_turns(lower: float | None, upper: float | None) -> tuple[float, float]:
-    """Return limits [rad], -pi and pi in place of those that are missing.
-
-    Notes
-    -----
-    Missing are: None, numbers beyond 1e6, and both zero, which is what URDF makes of limits that
-    are left out and what exporters of drawing programs write for "not set".
-
-    Examples
-    --------
-    >>> limits_or_half_turns(-1.0, None), limits_or_half_turns(-1e16, 1e16)
-    ((-1.0, 3.141592653589793), (-3.141592653589793, 3.141592653589793))
-    >>> limits_or_half_turns(0.0, 0.0)
-    (-3.141592653589793, 3.141592653589793)
-    """
-    if lower == upper == 0:
-        lower = upper = None
-    return (
-        -math.pi if lower is None or lower < -_NO_LIMIT else float(lower),
-        math.pi if upper is None or upper > _NO_LIMIT else float(upper),
-    )
+        return -math.inf, math.inf
+    return read_limits(model.lowerPositionLimit[kind.idx_q], model.upperPositionLimit[kind.idx_q])

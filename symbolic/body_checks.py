@@ -34,7 +34,6 @@ def check_body(body: ArmBody, where: str) -> None:
         ("translations", "finite positions [m]"),
         ("rotations", "rotation matrices"),
         ("axes", "unit axes"),
-        ("limits", "finite limits [rad]"),
         ("damping", "finite damping [N m s/rad]"),
     ):
         for name, values in zip(body.joint_names, getattr(body, field), strict=True):
@@ -48,7 +47,7 @@ def check_body(body: ArmBody, where: str) -> None:
         if body.damping[i] < 0:
             raise InputError(where, f"damping of joint '{name}'", body.damping[i], "a number >= 0")
         lower, upper = body.limits[i]
-        if not lower < upper:
+        if not lower < upper:  # NaN neither
             raise InputError(
                 where, f"limits of joint '{name}'", f"[{lower}, {upper}]", "lower < upper [rad]"
             )

@@ -57,7 +57,9 @@ class Robot:
     joint_names : tuple of str
         One name per joint.
     limits : (n, 2) array
-        Lower and upper joint limits [rad]; -pi, pi where the file has none.
+        Lower and upper joint limits [rad], infinite where a joint has none: continuous joints,
+        and revolute ones without limits or with both zero. `symbolic.joint_limits` says which
+        angles to draw from then.
     damping : (n,) array
         Viscous damping of the joints [N m s/rad], 0 where the file has none.
     snaps : tuple of Snap

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +10,7 @@ import defusedxml
 import defusedxml.ElementTree as SafeElementTree
 
 from symbolic.errors import InputError
+from symbolic.joint_limits import UNLIMITED
 from symbolic.urdf_elements import MOVING, PRODUCTS, UrdfJoint, UrdfLink, UrdfReader
 
 
@@ -112,7 +112,7 @@ def urdf_text(urdf: Urdf) -> str:
         if joint.lower is not None and joint.upper is not None:
             limit |= {"lower": (joint.lower,), "upper": (joint.upper,)}
         elif joint.kind == "revolute":  # left out they would read as zero
-            limit |= {"lower": (-math.pi,), "upper": (math.pi,)}
+            limit |= {"lower": (-UNLIMITED,), "upper": (UNLIMITED,)}
         _add(element, "limit", **limit)
     return ElementTree.tostring(robot, encoding="unicode")
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from symbolic.arm_body import ArmBody, limits_or_half_turns
+from symbolic.arm_body import ArmBody
+from symbolic.joint_limits import read_limits
 from symbolic.snapping import multiply, rotation_from_rpy, unit_axis
 from symbolic.urdf import Urdf
 from symbolic.urdf_elements import UrdfJoint, UrdfLink
@@ -57,7 +58,7 @@ def body_from_urdf(urdf: Urdf, joint_names: Sequence[str]) -> ArmBody:
         masses=np.array([mass for mass, _, _ in bodies]),
         levers=np.array([lever for _, lever, _ in bodies]),
         inertias=np.array([inertia for _, _, inertia in bodies]),
-        limits=np.array([limits_or_half_turns(joint.lower, joint.upper) for joint in moving]),
+        limits=np.array([read_limits(joint.lower, joint.upper) for joint in moving]),
         efforts=np.array([joint.effort for joint in moving]),
         velocities=np.array([joint.velocity for joint in moving]),
         damping=np.array([joint.damping for joint in moving]),

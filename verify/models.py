@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
+from symbolic.joint_limits import finite_limits
 from symbolic.relations import SymmetryGroup
 from verify.counterexamples import largest_value
 from verify.model_probes import equivariance_error, moved_to_limits, periodicity_error
@@ -116,7 +117,8 @@ def verify_model(
     gravity
         The true gravity torque.
     limits
-        Judge within these joint limits, (n, 2) [rad]; the whole torus by default.
+        Judge within these joint limits, (n, 2) [rad], infinite where a joint has none; the whole
+        torus by default.
     group
         Also measure equivariance under this group.
     orbits
@@ -158,7 +160,8 @@ def verify_model(
     """
     n = gravity.n
     predict = _checked(model.predict if hasattr(model, "predict") else model, n)
-    box = np.array([[-np.pi, np.pi]] * n) if limits is None else np.asarray(limits, dtype=float)
+    everywhere = np.tile([-np.pi, np.pi], (n, 1))
+    box = everywhere if limits is None else finite_limits(limits)
     active = np.array([name not in gravity.free_joints for name in gravity.joint_names])
     dense = dense_targets(box)
 

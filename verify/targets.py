@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symbolic.errors import InputError
+from symbolic.joint_limits import one_turn
 
 Array = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ def dense_targets(limits: ArrayLike, *, samples: int = DENSE, seed: int = 201808
     Parameters
     ----------
     limits
-        Joint limits (n, 2) [rad].
+        Joint limits (n, 2) [rad], infinite where a joint has none.
     samples
         Number of configurations.
     seed
@@ -47,7 +48,7 @@ def dense_targets(limits: ArrayLike, *, samples: int = DENSE, seed: int = 201808
     Raises
     ------
     InputError
-        If limits are reversed or not finite.
+        If limits are reversed or no numbers.
 
     Examples
     --------
@@ -57,8 +58,7 @@ def dense_targets(limits: ArrayLike, *, samples: int = DENSE, seed: int = 201808
     box = np.asarray(limits, dtype=float)
     if box.ndim != 2 or box.shape[1] != 2 or not np.all(box[:, 0] <= box[:, 1]):
         raise InputError("dense targets", "limits", box.tolist(), "(n, 2), lower <= upper [rad]")
-    low = np.where(np.ptp(box, axis=1) > 2 * np.pi, -np.pi, box[:, 0])
-    high = np.where(np.ptp(box, axis=1) > 2 * np.pi, np.pi, box[:, 1])
+    low, high = one_turn(box).T
     q = np.random.default_rng(seed).uniform(low, high, (samples, len(box)))
     return TargetSet(f"dense set of {samples}", q)
 

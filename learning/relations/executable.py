@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linprog
 
 from symbolic.errors import InputError
+from symbolic.joint_limits import TURN, finite_limits
 from symbolic.relations import SymmetryRelation
 
 Array = NDArray[np.float64]
 
-TURN = 2.0 * np.pi
 SLACK = 1e-9
 """Configurations this little beyond a limit are at it [rad]."""
 
@@ -56,7 +56,7 @@ def is_executable(relation: SymmetryRelation, limits: ArrayLike) -> bool:
     if not (box[:, 0] <= box[:, 1]).all():
         raise InputError("executable", "limits", box.tolist(), "lower <= upper [rad]")
     narrow = box[:, 1] - box[:, 0] < TURN - SLACK
-    box = _one_turn(box)
+    box = finite_limits(box)
     A, d, (low, high) = relation.A[narrow], relation.d[narrow], box[narrow].T
     reach = np.sort(np.stack([A * box[:, 0], A * box[:, 1]]), axis=0).sum(axis=2) + d
     first = np.ceil((low - reach[1] - SLACK) / TURN).astype(int)
@@ -72,10 +72,3 @@ def is_executable(relation: SymmetryRelation, limits: ArrayLike) -> bool:
         if found.status == 0:
             return True
     return False
-
-
-def _one_turn(limits: Array) -> Array:
-    """Limits (n, 2) with one full turn where an end is missing: other turns say the same."""
-    low, high = limits.T
-    low = np.where(np.isfinite(low), low, np.where(np.isfinite(high), high - TURN, -np.pi))
-    return np.stack([low, np.where(np.isfinite(high), high, low + TURN)], axis=1)

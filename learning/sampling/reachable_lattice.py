@@ -14,6 +14,7 @@ from learning.sampling.lattice import lattice_samples
 from learning.sampling.sampling_region import SamplingRegion
 from symbolic.domain import FundamentalDomain
 from symbolic.errors import InputError
+from symbolic.joint_limits import one_turn
 from symbolic.relations import SymmetryGroup, wrap
 
 Array = NDArray[np.float64]
@@ -55,7 +56,7 @@ def reachable_lattice(
         Symmetry relations: one configuration per orbit is enough, and of an orbit the member is
         taken that lies within the limits. None: all joint angles are sampled.
     limits : (n, 2) array
-        Joint limits [rad].
+        Joint limits [rad], infinite where a joint has none.
     count
         Number of configurations wanted; a denser lattice makes up for those out of reach. The
         nearest number that the lattice can give is taken.
@@ -96,7 +97,7 @@ def reachable_lattice(
 
 def turned_into(q: Array, limits: Array) -> Array:
     """Configurations (m, n), turned by full turns to where limits (n, 2) may hold them [rad]."""
-    middle = limits.mean(axis=1)
+    middle = one_turn(limits).mean(axis=1)
     return np.asarray(middle + wrap(q - middle))
 
 

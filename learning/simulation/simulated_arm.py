@@ -39,7 +39,7 @@ class SimulatedArm(SimulatedBody):
         Coulomb friction per joint [N m], in ``geared`` physics alone. By default the robot file's,
         and where that has none 1 % of the joint's largest gravity stiffness.
     limits
-        Joint limits (n, 2) [rad], ``"file"`` (default: those of the robot file, -pi and pi where
+        Joint limits (n, 2) [rad], ``"file"`` (default: those of the robot file, none where
         it has none) or ``"none"``. Entries may be infinite.
     home
         Home configuration (n,) [rad], strictly within the limits and where a constant torque can

@@ -159,7 +159,7 @@ def test_damping_and_limits_come_from_the_file(tmp_path):
     robot = load_robot(path)
     assert robot.damping.tolist() == [0.25, 0.0]
     assert robot.source_model.nq == 3
-    np.testing.assert_array_equal(robot.limits, [[-np.pi, np.pi]] * 2)
+    np.testing.assert_array_equal(robot.limits, [[-np.inf, np.inf], [-np.pi, np.pi]])
     np.testing.assert_array_equal(robot.model.lowerPositionLimit, robot.limits[:, 0])
     np.testing.assert_array_equal(robot.model.damping, robot.damping)
     assert robot.digest != load_robot("2r").digest
@@ -172,11 +172,11 @@ def test_the_name_is_that_of_the_file_where_the_robot_has_none(tmp_path):
 
 
 @pytest.mark.parametrize("limits", ['lower="-1e16" upper="1e16"', 'lower="0" upper="0"', ""])
-def test_limits_that_mean_none_are_half_a_turn_each_way(tmp_path, limits):
+def test_limits_that_mean_none_are_infinite(tmp_path, limits):
     path = tmp_path / "arm.urdf"
     text = (FILES / "2r.urdf").read_text()
     path.write_text(text.replace('lower="-3.141592653589793" upper="3.141592653589793"', limits, 1))
     for snap in (True, False):
         robot = load_robot(path, snap=snap)
-        np.testing.assert_array_equal(robot.limits, [[-np.pi, np.pi]] * 2)
-        np.testing.assert_array_equal(robot.model.lowerPositionLimit, [-np.pi] * 2)
+        np.testing.assert_array_equal(robot.limits, [[-np.inf, np.inf], [-np.pi, np.pi]])
+        np.testing.assert_array_equal(robot.model.lowerPositionLimit, [-np.inf, -np.pi])

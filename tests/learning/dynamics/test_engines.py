@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from learning.physics import SettleRule
 from learning.simulation.simulated_arm import SimulatedArm
 from symbolic.errors import InputError
+from symbolic.joint_limits import finite_limits
 from symbolic.robots import load_robot
 from tests.learning.random_arms import arm_models
 
@@ -24,7 +25,7 @@ def draw_motions(arm, count, rng):
 
     One torque in four is larger than any configuration needs.
     """
-    low, high = arm.limits.T
+    low, high = finite_limits(arm.limits).T
     starts = rng.uniform(low, high, (count, arm.n))
     targets = rng.uniform(low, high, (count, arm.n))
     torques = np.array([arm.equations.gravity_torque(q) for q in targets])
