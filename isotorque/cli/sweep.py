@@ -15,8 +15,9 @@ Table = Annotated[
     Path,
     typer.Argument(
         metavar="TABLE",
-        help="A .csv with columns robot, learner, seed (symmetries, samples), one run per line; or "
-        "a .toml with lists robots, learners, seeds (symmetries, samples), all combined.",
+        help="A .csv with columns robot, learner, seed, one run per line; or a .toml with lists "
+        "robots, learners, seeds, all combined. If wanted also strategy (.toml: strategies), "
+        "symmetries, samples, physics and the other options of `isotorque learn`, such as n_min.",
         show_default=False,
     ),
 ]

@@ -20,7 +20,7 @@ from learning.physics import PhysicsMode
 
 def learn_options(
     robot: str,
-    out: Path,
+    out: Path | None,
     strategy: str,
     symmetries: str,
     learner: str | None,
@@ -35,10 +35,11 @@ def learn_options(
         As in `RunOptions`.
     out
         Directory of the run. Where it holds a discovery, what is not given is taken from there.
+        None: there is none.
     learner, samples
         None: the default of the strategy.
     given
-        Options of the arm (`ArmOptions`) and ``n_min``, as far as the user gave them.
+        Options of the arm (`ArmOptions`), ``n_min`` and ``confirm``, as far as the user gave them.
 
     Raises
     ------
@@ -50,7 +51,7 @@ def learn_options(
     asked = {f.name: given[f.name] for f in fields(ArmOptions) if f.name in given}
     if strategy == LATTICE and "physics" not in asked:
         asked["physics"] = PhysicsMode.GUIDED.value
-    recorded = recorded_discovery(out)
+    recorded = None if out is None else recorded_discovery(out)
     if recorded is None:
         arm, n_min, confirm = ArmOptions(**asked), 2, 0
         # an arm discovers by itself; it is led only to what it cannot hold
@@ -61,5 +62,5 @@ def learn_options(
         arm = replace(discovery, **asked)
         # one robot in one run: the recording refuses another one
         discovery = replace(discovery, snap=arm.snap)
-    n_min = given.get("n_min", n_min)
+    n_min, confirm = given.get("n_min", n_min), given.get("confirm", confirm)
     return RunOptions(robot, arm, n_min, samples, learner, symmetries, strategy, discovery, confirm)

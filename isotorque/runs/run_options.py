@@ -14,6 +14,11 @@ STRATEGIES = (*EXPLORATIONS, LATTICE)
 LATTICE_SAMPLES, ONLINE_SAMPLES, BATCH_SAMPLES = 255, 3000, 500
 """Samples by default: the paper's lattice; learned one by one; collected for one fit."""
 
+LARGEST_SEED = 2**63 - 1
+"""What a recording can hold."""
+MOST_SAMPLES = 10_000_000
+"""More would not fit into memory."""
+
 
 def default_learner(strategy: str) -> str:
     """Return the learner where none is named: the paper's for online and for batch learning."""
@@ -52,6 +57,10 @@ class ArmOptions:
     angle_noise: float = 0.0
     torque_noise: float = 0.0
     encoder_step: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.seed <= LARGEST_SEED:
+            raise InputError("run", "--seed", self.seed, f"0 to {LARGEST_SEED}")
 
     @property
     def is_exact(self) -> bool:
@@ -99,8 +108,8 @@ class RunOptions:
 
     def __post_init__(self) -> None:
         check_symmetries(self.symmetries)
-        if self.samples < 1:
-            raise InputError("run", "--samples", self.samples, "at least 1")
+        if not 1 <= self.samples <= MOST_SAMPLES:
+            raise InputError("run", "--samples", self.samples, f"1 to {MOST_SAMPLES}")
         if self.n_min < 1:
             raise InputError("run", "--n-min", self.n_min, "at least 1")
         if self.confirm < 0:

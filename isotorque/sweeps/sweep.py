@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -17,9 +17,11 @@ from isotorque.files import output_directory, write_whole
 from isotorque.paper.parts import Parts
 from isotorque.parallel import in_processes, on_cluster
 from isotorque.runs.experiment import run_experiment
-from isotorque.runs.run_options import ArmOptions, RunOptions
-from isotorque.sweeps.sweep_table import SweepRun
+from isotorque.runs.lattice_learning import learn_from_lattice
+from isotorque.runs.run_options import LATTICE
+from isotorque.sweeps.sweep_table import SweepRun, told_options
 from learning.recordings.run_info import software_versions
+from symbolic.errors import InputError
 from verify.figures.learning_curves import LearningCurve, curve_panels
 from verify.figures.style import save_figure
 
@@ -28,8 +30,8 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str, int, int, str], None]
 COLUMNS = (
-    "robot", "learner", "symmetries", "seed", "samples", "rmse", "explored", "motions",
-    "inadmissible",
+    "robot", "learner", "strategy", "symmetries", "seed", "samples", "rmse", "explored",
+    "motions", "inadmissible",
 )  # fmt: skip
 
 
@@ -42,7 +44,7 @@ class SweepResult:
     rows : tuple of dict
         One per evaluation of a run, with `COLUMNS`: torque RMSE on the dense set [N m] after so
         many commands, share of the BCTS explored by then; motions of the discovery before, and
-        share of the commands that were inadmissible.
+        share of the commands that were inadmissible. Other options in which runs differ follow.
     table, plot : Path
         ``sweep.csv`` and ``sweep.svg``.
     """
@@ -53,20 +55,32 @@ class SweepResult:
 
 
 def perform_run(run: SweepRun) -> dict[str, Any]:
-    """Discover and learn once; return plain numbers, the same wherever it is done."""
-    options = RunOptions(
-        run.robot, ArmOptions(run.seed), learner=run.learner, symmetries=run.symmetries,
-        samples=run.samples,
-    )  # fmt: skip
-    with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
-        result = run_experiment(options, Path(folder), lambda stage, done, total, note: None)
-    lost = sum(str(step.outcome.kind) != "settled" for step in result.steps)
-    return {
-        "curve": [asdict(point) for point in result.curve],
-        "motions": len(result.motions),
-        "inadmissible": lost / max(1, len(result.steps)),
-        "versions": software_versions(),
-    }
+    """Discover and learn once; return plain numbers, the same wherever it is done.
+
+    What the robot turns out to be unfit for is returned as well: other runs go on.
+    """
+    try:
+        with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
+            found = _learned(run, Path(folder))
+    except InputError as error:
+        found = {"refused": str(error)}
+    return {**found, "versions": software_versions()}
+
+
+def _learned(run: SweepRun, folder: Path) -> dict[str, Any]:
+    if run.options.strategy == LATTICE:
+        learned = learn_from_lattice(run.options, folder, _silent)
+        curve, motions, lost = learned.curve, learned.discovery_motions, 0.0
+    else:
+        result = run_experiment(run.options, folder, _silent)
+        curve, motions = tuple(result.curve), len(result.motions)
+        unsettled = sum(str(step.outcome.kind) != "settled" for step in result.steps)
+        lost = unsettled / max(1, len(result.steps))
+    return {"curve": [asdict(p) for p in curve], "motions": motions, "inadmissible": lost}
+
+
+def _silent(stage: str, done: int, total: int, note: str) -> None:
+    pass
 
 
 def sweep(
@@ -91,7 +105,8 @@ def sweep(
     Raises
     ------
     InputError
-        For results made by other versions, and files that cannot be written.
+        For results made by other versions, and files that cannot be written; for runs that were
+        refused, after the table of all others is written.
     """
     parts = Parts(output_directory(out) / "parts", {"kind": "sweep"})
     done = parts.load(run.name for run in runs)
@@ -102,38 +117,57 @@ def sweep(
         if scheduler is None
         else on_cluster(perform_run, left, scheduler)
     )
+    refused: list[tuple[SweepRun, str]] = []
     for run, result in results if left else ():
+        if "refused" in result:
+            refused.append((run, result["refused"]))
+            continue
         parts.save(run.name, result)
         done[run.name] = result
         progress("runs", len(done), len(runs), run.name)
-    rows = tuple(row for run in runs for row in _rows(run, done[run.name]))
+    finished = [run for run in runs if run.name in done]
+    more = [name for name in told_options(finished) if name not in COLUMNS]
+    rows = tuple(row for run in finished for row in _rows(run, done[run.name], more))
     table, plot = out / "sweep.csv", out / "sweep.svg"
-    write_whole(table, _text(rows))
-    save_figure(_plot(runs, done), plot)
+    write_whole(table, _text(rows, more))
+    if finished:
+        save_figure(_plot(finished, done), plot)
+    if refused:
+        _refuse(refused, table)
     return SweepResult(rows, table, plot)
 
 
-def _rows(run: SweepRun, result: dict[str, Any]) -> list[dict[str, Any]]:
+def _refuse(refused: Sequence[tuple[SweepRun, str]], table: Path) -> NoReturn:
+    run, why = min(refused, key=lambda pair: pair[0].name)
+    others = f"; {len(refused) - 1} more runs are refused" if len(refused) > 1 else ""
+    what = f"run of {run.robot} with {run.learner}, seed {run.seed},"
+    accepted = f"runs that can be done; the others are in {table}"
+    raise InputError("sweep", what, f"refused ({why}){others}", accepted)
+
+
+def _rows(run: SweepRun, result: dict[str, Any], more: Sequence[str]) -> list[dict[str, Any]]:
     return [
         {
             "robot": run.robot,
             "learner": run.learner,
-            "symmetries": run.symmetries,
+            "strategy": run.options.strategy,
+            "symmetries": run.options.symmetries,
             "seed": run.seed,
             "samples": point["samples"],
             "rmse": point["rmse"],
             "explored": point["explored"],
             "motions": result["motions"],
             "inadmissible": result["inadmissible"],
+            **{name: run.option(name) for name in more},
         }
         for point in result["curve"]
     ]
 
 
-def _text(rows: Sequence[dict[str, Any]]) -> str:
+def _text(rows: Sequence[dict[str, Any]], more: Sequence[str]) -> str:
     """Return rows as CSV; numbers in full, nothing where there is none."""
     buffer = io.StringIO()
-    writer = csv.DictWriter(buffer, COLUMNS, lineterminator="\n")
+    writer = csv.DictWriter(buffer, (*COLUMNS, *more), lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return buffer.getvalue()
@@ -142,9 +176,9 @@ def _text(rows: Sequence[dict[str, Any]]) -> str:
 def _plot(runs: Sequence[SweepRun], done: dict[str, dict[str, Any]]) -> Figure:
     """Draw one panel per robot: medians over seeds, with the lowest and highest."""
     panels: dict[str, dict[str, list[dict[str, Any]]]] = {}
-    several = len({run.symmetries for run in runs}) > 1
+    differing = [name for name in told_options(runs) if name != "learner"]
     for run in runs:
-        name = f"{run.learner}, {run.symmetries}" if several else run.learner
+        name = ", ".join([run.learner, *(_said(run, option) for option in differing)])
         entry = panels.setdefault(run.robot, {}).setdefault(name, [])
         entry.append(done[run.name])
     return curve_panels(
@@ -153,6 +187,11 @@ def _plot(runs: Sequence[SweepRun], done: dict[str, dict[str, Any]]) -> Figure:
             for robot, learners in panels.items()
         }
     )
+
+
+def _said(run: SweepRun, option: str) -> str:
+    value = run.option(option)
+    return value if isinstance(value, str) else f"{option} {value}"
 
 
 def _curve(name: str, seeds: Sequence[dict[str, Any]]) -> LearningCurve:

@@ -2,16 +2,19 @@
 
 import csv
 import json
+from dataclasses import fields
 
 import pytest
 
 from isotorque.cli.main import status
+from isotorque.runs.run_options import ArmOptions, RunOptions
 from isotorque.sweeps import sweep as sweep_module
 from isotorque.sweeps.sweep import COLUMNS, sweep
-from isotorque.sweeps.sweep_table import read_sweep
+from isotorque.sweeps.sweep_table import OPTIONS, read_sweep
 from symbolic.errors import InputError
 
 LEARNER = "recursive-least-squares"
+BOTH = f'robots = ["2r"]\nlearners = ["{LEARNER}"]\n'
 
 
 def quiet(*_):
@@ -26,16 +29,16 @@ def table(path, text):
 def test_a_toml_table_is_every_combination(tmp_path):
     text = f'robots = ["2r", "pendulum"]\nlearners = ["{LEARNER}"]\nseeds = [3, 7]\nsamples = 50\n'
     runs = read_sweep(table(tmp_path / "t.toml", text))
-    assert [(r.robot, r.seed, r.samples) for r in runs] == [
+    assert [(r.robot, r.seed, r.options.samples) for r in runs] == [
         ("2r", 3, 50), ("2r", 7, 50), ("pendulum", 3, 50), ("pendulum", 7, 50),
     ]  # fmt: skip
-    assert {r.symmetries for r in runs} == {"learned"}
+    assert {r.options.symmetries for r in runs} == {"learned"}
 
 
 def test_a_number_of_seeds_counts_from_zero(tmp_path):
     text = f'robots = ["2r"]\nlearners = ["{LEARNER}"]\nsymmetries = ["none", "exact"]\nseeds = 2\n'
     runs = read_sweep(table(tmp_path / "t.toml", text))
-    assert [(r.symmetries, r.seed) for r in runs] == [
+    assert [(r.options.symmetries, r.seed) for r in runs] == [
         ("none", 0), ("none", 1), ("exact", 0), ("exact", 1),
     ]  # fmt: skip
 
@@ -44,7 +47,7 @@ def test_a_csv_table_is_one_run_per_line_each_once(tmp_path):
     once = f"2r,{LEARNER},1,40\n"
     text = f"robot,learner,seed,samples\n{once}\npendulum, network ,2,\n{once}"
     runs = read_sweep(table(tmp_path / "t.csv", text))
-    assert [(r.robot, r.learner, r.seed, r.samples) for r in runs] == [
+    assert [(r.robot, r.learner, r.seed, r.options.samples) for r in runs] == [
         ("2r", LEARNER, 1, 40), ("pendulum", "network", 2, 1000),
     ]  # fmt: skip
     assert len({r.name for r in runs}) == 2
@@ -71,6 +74,20 @@ def test_a_csv_table_is_one_run_per_line_each_once(tmp_path):
         ("t.toml", f'robots = ["2r"]\nlearners = ["{LEARNER}"]\nseed = 1\n', ("key", "seed")),
         ("t.toml", 'robots = ["2r"]\nlearners = ["nobody"]\n', ("entry 1", "nobody")),
         ("t.txt", "x", ("ending", ".csv or .toml")),
+        ("t.toml", BOTH + "seeds = 10000000000\n", ("seeds", "10000000000", "100000")),
+        ("t.toml", BOTH + f"seeds = [{10**30}]\n", ("entry 1", "seed", "9223372036854775807")),
+        ("t.toml", BOTH + f"seeds = {'9' * 5000}\n", ("no TOML",)),
+        ("t.toml", BOTH + "seeds = []\n", ("seeds", "empty list")),
+        ("t.toml", BOTH + "seeds = 0\n", ("seeds", "0")),
+        ("t.toml", BOTH + "seeds = [[1]]\n", ("seeds", "[1]", "whole number")),
+        ("t.toml", BOTH + f"samples = {10**30}\n", ("samples", "1 to 10000000")),
+        ("t.toml", BOTH + "angle_noise = [0.0, inf]\n", ("angle_noise", "inf")),
+        ("t.toml", BOTH + 'snap = "perhaps"\n', ("snap", "true or false")),
+        ("t.toml", BOTH + 'strategies = ["flying"]\n', ("flying", "goal-babbling")),
+        ("t.toml", BOTH + 'strategy = "lattice"\n', ("key", "strategy", "strategies")),
+        ("t.toml", BOTH + "seeds = 50000\nsamples = [1, 2, 3]\n", ("combinations", "150000")),
+        ("t.csv", f"robot,learner,seed,strategy\n2r,{LEARNER},1,flying\n", ("row 2", "flying")),
+        ("t.csv", f"robot,learner,seed\n2r,{LEARNER},{10**30}\n", ("row 2", "seed")),
     ],
 )
 def test_a_bad_table_is_refused_in_one_line(tmp_path, capsys, name, text, said):
@@ -126,3 +143,56 @@ def test_a_longer_table_adds_its_runs(tmp_path, monkeypatch):
     found = sweep(runs, tmp_path, quiet, jobs=1)
     assert asked == [0, 1]
     assert [row["rmse"] for row in found.rows] == [1.0, 2.0]
+
+
+def test_strategies_and_other_options_are_columns(tmp_path):
+    text = BOTH + 'strategies = ["direction-sampling", "lattice"]\nangle_noise = [0.0, 0.001]\n'
+    runs = read_sweep(table(tmp_path / "t.toml", text + "samples = 30\n"))
+    told = [(r.options.strategy, r.options.arm.physics, r.options.arm.angle_noise) for r in runs]
+    assert told == [
+        ("direction-sampling", "open_loop", 0.0), ("direction-sampling", "open_loop", 0.001),
+        ("lattice", "guided", 0.0), ("lattice", "guided", 0.001),
+    ]  # fmt: skip
+    assert len({r.name for r in runs}) == 4
+    line = f"robot,learner,seed,strategy,samples,angle_noise\n2r,{LEARNER},0,lattice,30,0.001\n"
+    assert read_sweep(table(tmp_path / "t.csv", line)) == runs[3:]
+
+
+def test_all_options_of_a_run_are_columns():
+    known = {f.name for kind in (RunOptions, ArmOptions) for f in fields(kind)}
+    assert known - set(OPTIONS) == {"robot", "learner", "seed", "arm", "discovery_arm"}
+
+
+def test_a_lattice_is_learned_from(tmp_path, capsys):
+    text = f'robots = ["pendulum"]\nlearners = ["{LEARNER}"]\nsamples = [16, 8]\n'
+    text += 'strategies = ["direction-sampling", "lattice"]\nsymmetries = "none"\n'
+    path = table(tmp_path / "t.toml", text)
+    assert status(["sweep", str(path), "--out", str(tmp_path), "--jobs", "1", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    last = {(row["strategy"], row["samples"]): row["rmse"] for row in rows}
+    assert last["lattice", 16] < 1e-3
+    assert {row["strategy"] for row in rows} == {"direction-sampling", "lattice"}
+
+
+UNFIT = """<robot name="rods"><link name="base"/><link name="rod"><inertial><mass value="1"/>
+<origin xyz="0.1 0 0"/><inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="tip"><inertial><mass value="1e-30"/><inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0"
+iyz="0"/></inertial></link>
+<joint name="a" type="continuous"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+</joint><joint name="b" type="continuous"><parent link="rod"/><child link="tip"/>
+<axis xyz="0 1 0"/></joint>
+</robot>"""
+
+
+def test_a_refused_robot_names_itself_and_the_others_go_on(tmp_path, capsys):
+    (tmp_path / "unfit.urdf").write_text(UNFIT)
+    text = f'robots = ["{tmp_path}/unfit.urdf", "pendulum"]\nlearners = ["{LEARNER}"]\n'
+    path = table(tmp_path / "t.toml", text + "samples = 10\n")
+    assert status(["sweep", str(path), "--out", str(tmp_path / "out"), "--quiet"]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    for word in ("unfit.urdf", LEARNER, "rods", "sweep.csv"):
+        assert word in error
+    with (tmp_path / "out" / "sweep.csv").open() as file:
+        assert {row["robot"] for row in csv.DictReader(file)} == {"pendulum"}
+    assert (tmp_path / "out" / "sweep.svg").exists()
