@@ -166,6 +166,15 @@ class GravityModel:
         return self.chain.stiffness(q)
 
     @cached_property
+    def rounding(self) -> float:
+        """What the rounding of floats may do to `torque` at most [N m].
+
+        In proportion to what masses and lengths could make, not to the torque: a balanced arm
+        feels almost nothing, and all that cancels is rounded all the same.
+        """
+        return _ROUNDING * _torque_scale(self.tree) + float(np.finfo(float).tiny)
+
+    @cached_property
     def chain(self) -> GravityChain:
         """The tree reduced to what the torque depends on; raises InputError if it has symbols."""
         return GravityChain.of(self.tree)
@@ -184,7 +193,7 @@ class GravityModel:
         errors = [np.abs(g - truth) for g in (self.potential.gradient(q), self.torque(q))]
         error = np.maximum(*errors).max(axis=0)
         # A balanced arm feels almost nothing, but Pinocchio still rounds all that cancels.
-        rounding = RELATIVE_TOLERANCE * np.abs(truth).max() + _ROUNDING * _torque_scale(self.tree)
+        rounding = RELATIVE_TOLERANCE * np.abs(truth).max() + self.rounding
         allowed = robot.snap_bound + rounding
         worst = int(np.argmax(error - allowed))
         if not error[worst] <= allowed[worst]:

@@ -16,15 +16,22 @@ SAME_ANGLE = 1e-6
 """Offsets that differ by less [rad] belong to one relation; distinct ones are far apart."""
 
 
+MANY_TURNS = 100.0
+"""Beyond, subtracting rounded turns loses digits [rad]: sine and cosine reduce exactly."""
+
+
 def wrap(angle: ArrayLike) -> Array:
     """Return angles modulo 2 pi in (-pi, pi]; values within rounding of -pi are written pi.
 
     Examples
     --------
-    >>> wrap([-np.pi, 3 * np.pi, 0.5])
-    array([3.14159265, 3.14159265, 0.5       ])
+    >>> wrap([-np.pi, 3 * np.pi, 0.5, 6283185307179586.0])
+    array([ 3.14159265,  3.14159265,  0.5       , -0.47692529])
     """
     x = np.asarray(angle, dtype=float)
+    far = np.abs(x) > MANY_TURNS
+    if far.any():
+        x = np.where(far, np.arctan2(np.sin(x), np.cos(x)), x)
     wrapped = x - 2 * np.pi * np.ceil((x - np.pi) / (2 * np.pi) - 1e-12)
     return np.where(wrapped > np.pi, np.pi, wrapped) + 0.0
 
@@ -38,7 +45,7 @@ class SymmetryRelation:
     A : (n, n) array
         Linear part; integer for exact relations.
     d : (n,) array
-        Offset [rad].
+        Offset [rad], written in (-pi, pi].
     Y : (n,) array
         Signs +1 or -1 of the torques.
     basis : (r, n) int array, optional
@@ -48,6 +55,11 @@ class SymmetryRelation:
         Whether the relation is proved (with an exact d of which ``d`` is the rounding).
     bound : (n,) array, optional
         Bound on |g_i(A q + d) - Y_i g_i(q)| over all q [N m]; NaN where none is known.
+
+    Attributes
+    ----------
+    unwrapped_d : (n,) array
+        The offset as it was given [rad]: what a judge of the relation as written has to judge.
 
     Notes
     -----
@@ -69,6 +81,7 @@ class SymmetryRelation:
     basis: NDArray[np.int64]
     exact: bool
     bound: Array
+    unwrapped_d: Array
 
     def __init__(
         self,
@@ -80,6 +93,8 @@ class SymmetryRelation:
         bound: ArrayLike | None = None,
     ) -> None:
         matrix = np.array(A, dtype=float)
+        if np.any(np.abs(matrix) > 2.0**53) and not np.array_equal(matrix, np.array(A, object)):
+            raise InputError("relation", "A", A, "numbers that floats hold exactly")
         if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
             raise InputError("relation", "shape of A", matrix.shape, "(n, n)")
         n = len(matrix)
@@ -102,6 +117,7 @@ class SymmetryRelation:
             ("basis", rows),
             ("exact", bool(exact)),
             ("bound", limit),
+            ("unwrapped_d", offset),
         ):
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)

@@ -5,14 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from flint import acb, arb, ctx
+from flint import arb, arb_mat, ctx, fmpz_mat
 from numpy.typing import ArrayLike, NDArray
 
 from symbolic.trigonometric import TrigonometricPolynomial
-from verify.proof import PRECISION_BITS, exact_potential, lower, upper
-
-ROUND_UP = 1 + 1e-12
-"""More than float arithmetic loses in the sums of this file."""
+from verify.exact_numbers import (
+    PRECISION_BITS,
+    angle,
+    exact_matrix,
+    exact_vector,
+    lower,
+    maps,
+    phase,
+    upper,
+)
+from verify.proof import exact_potential
+from verify.residual import Residual
 
 
 def relation_error_bound(
@@ -23,9 +31,9 @@ def relation_error_bound(
     Parameters
     ----------
     A
-        Integer matrix (n, n).
+        Matrix (n, n), taken exactly: integers of any size, floats as the rationals they are.
     d
-        Offsets (n,) [rad].
+        Offsets (n,) [rad], taken exactly, whole turns included.
     Y
         Signs (n,).
     potential
@@ -34,13 +42,13 @@ def relation_error_bound(
     Returns
     -------
     (n,) array
-        Upper bounds [N m].
+        Upper bounds [N m], rounded up.
 
     Notes
     -----
     The error of each joint is itself a trigonometric polynomial, with the frequencies ``A^T k``
-    and ``k``; it is expanded in ball arithmetic and the bound is the sum of its amplitudes,
-    rounded up. Where A satisfies condition (i) this is ``eps_i = sum_k |k_i| |residual_k|``.
+    and ``k``; it is expanded in ball arithmetic and the bound is the sum of its amplitudes. Where
+    A satisfies condition (i) this is ``eps_i = sum_k |k_i| |residual_k|``.
 
     Examples
     --------
@@ -48,45 +56,8 @@ def relation_error_bound(
     >>> relation_error_bound([[-1, 0], [2, 1]], [0, 1e-6], [1, 1], U).round(8)
     array([6.1e-06, 6.1e-06])
     """
-    matrix = np.asarray(A, dtype=float).astype(np.int64)
-    flips = np.asarray(Y, dtype=np.int64)
-    exact = exact_potential(potential)
-    n = exact.n
-    waves: dict[tuple[int, ...], list[list[arb]]] = {}
-    with ctx.workprec(PRECISION_BITS):
-        offsets = [arb(float(x)) for x in np.asarray(d, dtype=float)]
-        for k, a, b in zip(exact.frequencies.tolist(), exact.cos, exact.sin, strict=True):
-            phase = sum((c * t for c, t in zip(k, offsets, strict=True) if c), arb(0))
-            c, s, a, b = phase.cos(), phase.sin(), arb(a), arb(b)
-            image = (np.asarray(k, dtype=np.int64) @ matrix).tolist()
-            _add_torque(waves, image, b * c - a * s, -(a * c + b * s), k)
-            weights = [-int(y) * x for x, y in zip(k, flips, strict=True)]
-            _add_torque(waves, k, b, -a, weights)
-        bound = [arb(0)] * n
-        for amplitudes in waves.values():
-            for i, (cos, sin) in enumerate(amplitudes):
-                bound[i] = bound[i] + abs(acb(cos, sin))
-        return np.array([upper(x) for x in bound])
-
-
-def _add_torque(
-    waves: dict[tuple[int, ...], list[list[arb]]],
-    frequency: list[int],
-    cos: arb,
-    sin: arb,
-    weights: list[int],
-) -> None:
-    """Add weight_i * (cos cos(f.q) + sin sin(f.q)) to the error of every joint i."""
-    leading = next((x for x in frequency if x), 0)
-    if leading < 0:
-        frequency, sin = [-x for x in frequency], -sin
-    if not leading:
-        sin = arb(0)
-    joints = waves.setdefault(tuple(frequency), [[arb(0), arb(0)] for _ in weights])
-    for joint, weight in zip(joints, weights, strict=True):
-        if weight:
-            joint[0] = joint[0] + weight * cos
-            joint[1] = joint[1] + weight * sin
+    signs = [int(y) for y in np.asarray(Y)]
+    return Residual.of(exact_matrix(A), exact_vector(d), signs, exact_potential(potential)).bound()
 
 
 def learned_map_bound(
@@ -103,9 +74,9 @@ def learned_map_bound(
     Parameters
     ----------
     A
-        Real matrix (n, n), near an integer matrix A0: the one found by rounding.
+        Real matrix (n, n), taken exactly, near an integer matrix A0: the one found by rounding.
     d, Y
-        Offsets (n,) [rad] and signs (n,).
+        Offsets (n,) [rad], taken exactly, and signs (n,).
     potential
         Gravity potential with rational or float coefficients.
     center, half_widths
@@ -114,12 +85,13 @@ def learned_map_bound(
     Returns
     -------
     (n,) array
-        Upper bounds on |g_i(A q + d) - Y_i g_i(q)| for q in the box [N m].
+        Upper bounds on |g_i(A q + d) - Y_i g_i(q)| for q in the box [N m], rounded up.
 
     Notes
     -----
     With ``dA = A - A0`` the bound is that of (A0, d) plus ``sum_k |k_i| amp_k min(2, |k.dA center|
-    + sum_j |(dA^T k)_j| half_widths_j)``.
+    + sum_j |(dA^T k)_j| half_widths_j)``, in ball arithmetic. An error of the offset, dd, is part
+    of ``d``: nothing in these bounds is measured from the exact offset.
 
     Examples
     --------
@@ -127,17 +99,34 @@ def learned_map_bound(
     >>> learned_map_bound([[-1, 1e-3], [2, 1]], [0, 0], [1, 1], U).round(4)
     array([0.077 , 0.0192])
     """
-    matrix = np.asarray(A, dtype=float)
-    nearest = np.round(matrix)
+    rows = exact_matrix(A)
     n = potential.n
-    middle = np.zeros(n) if center is None else np.asarray(center, dtype=float)
-    width = np.full(n, np.pi) if half_widths is None else np.asarray(half_widths, dtype=float)
-    base = relation_error_bound(nearest, d, Y, potential)
-    k = potential.frequencies.astype(float)
-    difference = matrix - nearest
-    slope = k @ difference
-    phase = np.minimum(2.0, np.abs(slope @ middle) + np.abs(slope) @ width)
-    return (base + (potential.amplitudes() * phase) @ np.abs(k)) * ROUND_UP
+    whole = [[int(x) if isinstance(x, int) else int(x.round()) for x in row] for row in rows]
+    middle = [0] * n if center is None else exact_vector(center)
+    exact = exact_potential(potential)
+    base = relation_error_bound(whole, d, Y, exact)
+    with ctx.workprec(PRECISION_BITS):
+        widths = (
+            [arb.pi()] * n if half_widths is None else [arb(x) for x in exact_vector(half_widths)]
+        )
+        difference = arb_mat(
+            [
+                [arb(x) - y for x, y in zip(a, b, strict=True)]
+                for a, b in zip(rows, whole, strict=True)
+            ]
+        )
+        k = exact.frequencies.tolist()
+        slopes = arb_mat(fmpz_mat(len(k), n, [x for row in k for x in row])) * difference
+        bound = [arb(x) for x in base]
+        for j, (row, a, b) in enumerate(zip(k, exact.cos, exact.sin, strict=True)):
+            slope = [slopes[j, i] for i in range(n)]
+            turned = abs(sum((x * m for x, m in zip(slope, middle, strict=True)), arb(0)))
+            turned = turned + sum((abs(x) * w for x, w in zip(slope, widths, strict=True)), arb(0))
+            size = (arb(a) ** 2 + arb(b) ** 2).sqrt() * min(2.0, upper(turned))
+            for i, weight in enumerate(row):
+                if weight:
+                    bound[i] = bound[i] + abs(weight) * size
+        return np.array([upper(x) for x in bound])
 
 
 def certified_error(
@@ -169,24 +158,21 @@ def certified_error(
     True
     """
     exact = exact_potential(potential)
-    n = exact.n
-    matrix, flips = np.asarray(A, dtype=float), np.asarray(Y, dtype=np.int64)
+    point = exact_vector(q)
+    signs = [int(y) for y in np.asarray(Y)]
     with ctx.workprec(PRECISION_BITS):
-        here = [arb(float(x)) for x in np.asarray(q, dtype=float)]
-        there = [
-            sum((arb(float(c)) * x for c, x in zip(row, here, strict=True) if c), arb(float(t)))
-            for row, t in zip(matrix, np.asarray(d, dtype=float), strict=True)
-        ]
-        error = [arb(0)] * n
+        here = [angle(x) for x in point]
+        there = [angle(x) for x in maps(exact_matrix(A), exact_vector(d), point)]
+        error = [arb(0)] * exact.n
         for k, a, b in zip(exact.frequencies.tolist(), exact.cos, exact.sin, strict=True):
             at_image, at_q = _wave(k, a, b, there), _wave(k, a, b, here)
             for i, weight in enumerate(k):
                 if weight:
-                    error[i] = error[i] + weight * (at_image - int(flips[i]) * at_q)
+                    error[i] = error[i] + weight * (at_image - signs[i] * at_q)
         return np.array([max(0.0, lower(abs(x))) for x in error])
 
 
 def _wave(k: list[int], a: Any, b: Any, q: list[arb]) -> arb:
     """Return b cos(k.q) - a sin(k.q): the torque that term k contributes per unit of k_i."""
-    phase = sum((c * x for c, x in zip(k, q, strict=True) if c), arb(0))
-    return arb(b) * phase.cos() - arb(a) * phase.sin()
+    at = phase(k, q)
+    return arb(b) * at.cos() - arb(a) * at.sin()

@@ -77,7 +77,10 @@ class Field:
         return [Field(self.where, f"{self.name}[{i}]", x) for i, x in enumerate(self.value)]
 
     def number(self) -> float:
-        """Return a finite number; JSON's true and false are none."""
+        """Return a finite number; JSON's true and false are none.
+
+        A decimal stands for the float nearest to it; an integer that no float equals is refused.
+        """
         if isinstance(self.value, bool) or not isinstance(self.value, int | float):
             self.refuse("a finite number")
         try:
@@ -86,10 +89,14 @@ class Field:
             number = math.inf
         if not math.isfinite(number):
             self.refuse("a finite number")
+        if isinstance(self.value, int) and number != self.value:
+            self.refuse("an integer that a float holds exactly")
         return number
 
     def integer(self) -> int:
         """Return an integer (3.0 is one)."""
+        if isinstance(self.value, int) and not isinstance(self.value, bool):
+            return self.value
         number = self.number()
         if number != round(number):
             self.refuse("an integer")

@@ -71,7 +71,7 @@ def largest_value(
     spread = best - float(values.min())
     if spread <= 0.0:  # constant, as far as can be seen
         return best, at
-    scale = 1.0 / spread
+    scale = 1.0 / max(spread, float(np.finfo(float).tiny))
     for start in points[order]:
         climb = scipy.optimize.minimize(
             lambda q: -scale * float(value(q[None, :])[0]),

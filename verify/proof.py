@@ -6,16 +6,26 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, ctx, fmpq, fmpq_mat, fmpz_mat
 from numpy.typing import ArrayLike, NDArray
 
 from symbolic.errors import InputError
 from symbolic.kinematic_tree import rational
 from symbolic.trigonometric import TrigonometricPolynomial
+from verify.exact_numbers import (
+    PRECISION_BITS,
+    Exact,
+    angle,
+    exact_matrix,
+    exact_vector,
+    phase,
+    times,
+    upper,
+)
 
-PRECISION_BITS = 128
-OFFSET_ROUNDING = 1e-13
-"""How far a printed phase k.d may lie from the exact one and still be its rounding [rad]."""
+OFFSET_ROUNDING = 2.0**-51
+"""How far each printed offset may lie from the exact one and still be its rounding [rad]: one
+unit in the last place of a float near pi, 4.4e-16. Correct rounding stays within half of it."""
 
 Gaussian = tuple[fmpq, fmpq]
 """A number of Q(i): real and imaginary part."""
@@ -36,8 +46,8 @@ class Proof:
     signs : (m,) int array
         The signs s_k of condition (i), one per frequency; empty where (i) fails.
     offset_error : float
-        Largest distance of exp(i k.d), as printed, from its exact value; inf where no exact
-        offset exists.
+        Upper bound on the distance of any offset, as printed, from an exact one modulo 2 pi
+        [rad]; inf where no exact offset exists.
     """
 
     holds: bool
@@ -76,9 +86,10 @@ def prove_relation(
     Parameters
     ----------
     A
-        Matrix (n, n).
+        Matrix (n, n), taken exactly: integers of any size, floats as the rationals they are.
     d
-        Offsets (n,) [rad], as printed: an exact offset must round to them.
+        Offsets (n,) [rad], as printed and taken exactly, whole turns included: some exact offset
+        must lie within one unit in the last place of pi (2^-51 rad) of each.
     Y
         Signs (n,), each +1 or -1.
     potential
@@ -95,7 +106,9 @@ def prove_relation(
     are exact numbers of Q(i). An exact ``d`` exists iff they have modulus one and obey every
     integer relation of the frequencies; both are decided by row-reducing the pairs (k | u_k) over
     the integers, where the second column is multiplicative: each row that becomes zero must carry
-    the unit 1. That the printed ``d`` rounds to an exact one is checked in ball arithmetic.
+    the unit 1. The rows that remain generate the lattice of the frequencies, and the step from the
+    printed ``d`` to an exact one is the shortest that turns their phases right; its length is
+    bounded in ball arithmetic. A printed ``d`` farther off is not what is proved, and not proved.
 
     References
     ----------
@@ -109,18 +122,21 @@ def prove_relation(
     >>> prove_relation([[-1, 0], [2, -1]], [0, 0], [1, 1], U).reason
     'A^T k is neither Y k nor -Y k at k = (1, 1)'
     >>> prove_relation([[-1, 0], [2, 1]], [0, 0.25], [1, 1], U).reason
-    'exp(i k.d) differs from its exact value by 0.249 at k = (1, 1)'
+    'd is 0.25 rad from the exact offset'
     """
     exact = exact_potential(potential)
-    matrix = np.asarray(A, dtype=float)
     flips = np.asarray(Y, dtype=np.int64)
     nothing = np.zeros(0, dtype=np.int64)
-    if not np.all(matrix == np.round(matrix)):
-        return Proof(False, "A is not an integer matrix", nothing, np.inf)
     k = exact.frequencies
-    image, flipped = k @ matrix.astype(np.int64), k * flips
-    signs = np.where((image == flipped).all(axis=1), 1, 0)
-    signs = np.where((image == -flipped).all(axis=1), -1, signs)
+    signs = np.array(
+        [
+            _sign(image, flipped)
+            for image, flipped in zip(
+                times(k.tolist(), exact_matrix(A)), map(tuple, (k * flips).tolist()), strict=True
+            )
+        ],
+        dtype=np.int64,
+    )
     if not signs.all():
         worst = _text(k[int(np.argmin(np.abs(signs)))])
         return Proof(False, f"A^T k is neither Y k nor -Y k at k = {worst}", nothing, np.inf)
@@ -128,14 +144,19 @@ def prove_relation(
     for row, unit in zip(k, units, strict=True):
         if unit is None:
             return Proof(False, f"|C_Yk| differs from |C_k| at k = {_text(row)}", signs, np.inf)
-    complete = [unit for unit in units if unit is not None]
-    if not _consistent(k, complete):
+    generators = _generators(k, [unit for unit in units if unit is not None])
+    if generators is None:
         return Proof(False, "the phases admit no offset d", signs, np.inf)
-    error, at = _offset_error(k, complete, np.asarray(d, dtype=float))
-    if error > OFFSET_ROUNDING:
-        reason = f"exp(i k.d) differs from its exact value by {error:.3g} at k = {_text(k[at])}"
-        return Proof(False, reason, signs, error)
+    error = _offset_error(generators, exact_vector(d))
+    if not error <= OFFSET_ROUNDING:
+        return Proof(False, f"d is {error:.3g} rad from the exact offset", signs, error)
     return Proof(True, "", signs, error)
+
+
+def _sign(image: tuple[Exact, ...], flipped: tuple[int, ...]) -> int:
+    if image == flipped:
+        return 1
+    return -1 if image == tuple(-x for x in flipped) else 0
 
 
 def _units(
@@ -160,8 +181,10 @@ def _units(
     return units
 
 
-def _consistent(frequencies: NDArray[np.int64], units: list[Gaussian]) -> bool:
-    """Say whether some d has exp(i k.d) = u_k for all k: row reduction of (k | u_k) over Z."""
+def _generators(
+    frequencies: NDArray[np.int64], units: list[Gaussian]
+) -> list[tuple[list[int], Gaussian]] | None:
+    """Row-reduce (k | u_k) over Z: return what is left, None where no d has exp(i k.d) = u_k."""
     pivots: dict[int, tuple[list[int], Gaussian]] = {}
     for row, unit in zip(frequencies.tolist(), units, strict=True):
         current: tuple[list[int], Gaussian] = (row, unit)
@@ -180,8 +203,8 @@ def _consistent(frequencies: NDArray[np.int64], units: list[Gaussian]) -> bool:
             pivots[column] = pivot
         else:
             if current[1] != ONE:
-                return False
-    return True
+                return None
+    return list(pivots.values())
 
 
 def _minus(
@@ -207,28 +230,27 @@ def _times(x: Gaussian, y: Gaussian) -> Gaussian:
     return x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]
 
 
-def _offset_error(
-    frequencies: NDArray[np.int64], units: list[Gaussian], d: NDArray[np.float64]
-) -> tuple[float, int]:
-    """Return an upper bound on max |exp(i k.d) - u_k| and the index where it is reached."""
-    errors = [0.0]
+def _offset_error(generators: list[tuple[list[int], Gaussian]], d: list[Exact]) -> float:
+    """Bound the largest entry of the shortest step from ``d`` to an exact offset.
+
+    With the generators as rows of H and r what their phases lack, the step is
+    ``H^T (H H^T)^-1 r``: then ``H (d + step)`` are the exact phases, and with them those of all
+    frequencies, which are integer combinations of the generators.
+    """
+    if not generators:
+        return 0.0
+    H = fmpq_mat(fmpz_mat([row for row, _ in generators]))
+    inverse = (H.transpose() * (H * H.transpose()).inv()).tolist()
     with ctx.workprec(PRECISION_BITS):
-        offsets = [arb(float(x)) for x in d]
-        for row, (x, y) in zip(frequencies.tolist(), units, strict=True):
-            phase = sum((c * t for c, t in zip(row, offsets, strict=True) if c), arb(0))
-            errors.append(upper(abs(acb(phase.cos() - arb(x), phase.sin() - arb(y)))))
-    worst = int(np.argmax(errors))
-    return errors[worst], max(worst - 1, 0)
-
-
-def upper(ball: arb) -> float:
-    """Return a float that is not below any number of the ball."""
-    return 0.0 if ball == 0 else float(np.nextafter(float(ball.upper()), np.inf))
-
-
-def lower(ball: arb) -> float:
-    """Return a float that is not above any number of the ball."""
-    return 0.0 if ball == 0 else float(np.nextafter(float(ball.lower()), -np.inf))
+        printed = [angle(x) for x in d]
+        lacking = []
+        for row, (x, y) in generators:
+            at = phase(row, printed)
+            lacking.append((acb(arb(x), arb(y)) * acb(at.cos(), -at.sin())).arg())
+        steps = [
+            sum((arb(x) * r for x, r in zip(row, lacking, strict=True)), arb(0)) for row in inverse
+        ]
+        return max(upper(abs(step)) for step in steps)
 
 
 def _text(k: NDArray[np.int64]) -> str:

@@ -10,19 +10,29 @@ from numpy.typing import ArrayLike, NDArray
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryRelation
-from symbolic.trigonometric import TrigonometricPolynomial
-from verify.bounds import certified_error, learned_map_bound, relation_error_bound
+from verify.bounds import certified_error, learned_map_bound
 from verify.counterexamples import largest_value, simplest_configuration
+from verify.exact_numbers import angle, exact_matrix, exact_vector, maps, nearest
 from verify.proof import exact_potential, prove_relation
+from verify.residual import Residual
 from verify.verdict import Status, Verdict
 
 Array = NDArray[np.float64]
 
-FLOAT_NOISE = 1e-12
-"""Relative size of what float evaluation of torques may be wrong by."""
+IN_THE_BOX = ", for q within a turn around zero"
+"""Added to the words of a claim that is judged there only: a real matrix has no period."""
 
-VANISHING = 1e-15
-"""Offsets below the rounding of a turn are not written [rad]."""
+MARGIN = 1e-12
+"""More than the rounding of floats, relative: counterexamples are shrunk with this margin."""
+
+RANDOM_CONFIGURATIONS = 32
+"""Where torques of the recursion are held against what was proved or bounded."""
+
+FEW_TURNS = 32.0
+"""Images of small matrices and offsets are computed in floats, all others exactly."""
+
+FAST_CANDIDATES = 64
+"""Configurations tried one by one where waves are too fast to be climbed."""
 
 
 def verify_relation(
@@ -37,23 +47,27 @@ def verify_relation(
     Parameters
     ----------
     relation
-        The claimed relation; its matrix may be real (learned).
+        The claimed relation, judged as it was given: entries are the rationals that the floats
+        are, and offsets keep their whole turns. Its matrix may be real (learned).
     gravity
         The true gravity torque.
     tolerance
         Torque error that the claim is allowed [N m], one number or one per joint (then inf where
         anything goes). At 0 only a relation that is exactly true, up to the rounding of its
-        printed offset, passes.
+        printed offset (`verify.proof.OFFSET_ROUNDING`), passes.
     claim
         Words for the verdict; by default the relation written out.
 
     Returns
     -------
     Verdict
-        ``proved`` if the relation is exact (whatever the tolerance); ``bounded`` if its error is
-        within the tolerance for every q; ``refuted`` with a counterexample, whose error is above
-        the tolerance in ball arithmetic, not by rounding; ``tested`` if neither a bound nor a
-        counterexample was found (possible only where the bound is above the tolerance).
+        ``proved`` if an exact offset exists of which the printed one is the rounding (whatever
+        the tolerance); ``bounded`` if the error of the relation as printed is within the tolerance
+        for every q; ``refuted`` with a counterexample, whose error is above the tolerance in ball
+        arithmetic, not by rounding; ``tested`` if neither a bound nor a counterexample was found
+        (possible only where the bound is above the tolerance). Its ``worst_error`` is about the
+        relation as printed: an upper bound where proved or bounded, otherwise a lower bound on
+        the error at the worst configuration found.
 
     Raises
     ------
@@ -63,9 +77,11 @@ def verify_relation(
 
     Notes
     -----
-    A learned, real A is bounded on the box |q_j| <= pi; its counterexamples are sought there.
-    Deterministic. Even what is proved or bounded is checked against torques of the recursion
-    along the chain, which do not pass through the potential that the proof is about.
+    A learned, real A that exceeds the tolerance somewhere is bounded on the box |q_j| <= pi, which
+    the words of the claim say then; its counterexamples are sought there. Deterministic. Even what
+    is proved or bounded is checked against torques of the recursion along the chain, which do not
+    pass through the potential that the proof is about; the rounding allowed for that is in
+    proportion to masses and lengths (`GravityModel.rounding`).
 
     References
     ----------
@@ -85,32 +101,42 @@ def verify_relation(
     if relation.n != n:
         raise InputError("relation", "number of joints", relation.n, f"{n}, as the robot has")
     exact = exact_potential(potential)
-    noise = FLOAT_NOISE * float(exact.to_float().gradient_bound().max(initial=0.0))
     allowed = _tolerances(tolerance, n)
     if not potential.is_exact:
-        allowed = np.maximum(allowed, noise)
+        allowed = np.maximum(allowed, gravity.rounding)
     words = describe_relation(relation) if claim is None else claim
-    A, d, Y = relation.A, relation.d, relation.Y
+    A, d, Y = relation.A, relation.unwrapped_d, relation.Y
     proof = prove_relation(A, d, Y, exact)
-    integer = np.array_equal(A, np.round(A))
-    bound = (relation_error_bound if integer else learned_map_bound)(A, d, Y, exact)
-    worst = float(bound.max(initial=0.0))
-    judge = _Excess(relation, gravity, allowed)
-    if proof.holds or np.all(bound <= allowed):
-        excess = judge.sampled(bound)
-        if excess > 10 * noise:
-            raise InputError(
-                "gravity model", "difference of torque and potential", excess, "rounding errors"
-            )
-        return Verdict(words, Status.PROVED if proof.holds else Status.BOUNDED, worst)
-    _, q = largest_value(judge.value, n, gradient=judge.gradient)
-    largest = float(np.abs(judge.errors(q)).max(initial=0.0))
-    if not _certified(relation, exact, q, allowed):
+    residual = Residual.of(exact_matrix(A), exact_vector(d), [int(y) for y in Y], exact)
+    bound = residual.bound()
+    stands = proof.holds or bool(np.all(bound <= allowed))
+    if not stands and not np.array_equal(A, np.round(A)):
+        words += IN_THE_BOX
+        bound = np.minimum(bound, learned_map_bound(A, d, Y, exact))
+        stands = bool(np.all(bound <= allowed))
+    if stands:
+        _check_against_recursion(relation, gravity, bound)
+        status = Status.PROVED if proof.holds else Status.BOUNDED
+        return Verdict(words, status, float(bound.max(initial=0.0)))
+
+    def errors(q: Array) -> Array:
+        return certified_error(A, d, Y, exact, q)
+
+    def fails(q: Array) -> bool:
+        return bool(np.any(errors(q) > allowed))
+
+    excess = _Excess(residual, allowed)
+    found = excess.candidates()
+    q = next((q for q in found if fails(q)), None)
+    if q is None:
+        largest = max(float(errors(q).max(initial=0.0)) for q in found)
         return Verdict(words, Status.TESTED, largest)
-    simple = simplest_configuration(lambda x: judge.at(x) > 10 * noise, q)
-    if not _certified(relation, exact, simple, allowed):
-        simple = q
-    return Verdict(words, Status.REFUTED, largest, simple)
+    largest = float(errors(q).max())
+    margin = MARGIN * float(bound.max())
+    if residual.is_slow:
+        simple = simplest_configuration(lambda x: excess.at(x) > margin, q)
+        q = simple if fails(simple) else q
+    return Verdict(words, Status.REFUTED, largest, q)
 
 
 def verify_relations(
@@ -133,7 +159,7 @@ def describe_relation(relation: SymmetryRelation) -> str:
     >>> describe_relation(SymmetryRelation([[-1, 0], [2, 1]], [np.pi, 0.25], [1, -1]))
     "q1' = -q1 + pi, q2' = 2 q1 + q2 + 0.25, tau2' = -tau2"
     """
-    rows = enumerate(zip(relation.A, relation.d, strict=True), 1)
+    rows = enumerate(zip(relation.A, relation.unwrapped_d, strict=True), 1)
     parts = [f"q{i}' = {_row(a, d)}" for i, (a, d) in rows]
     flipped = [f"tau{i + 1}' = -tau{i + 1}" for i, y in enumerate(relation.Y) if y < 0]
     return ", ".join(parts + (flipped or ["tau' = tau"]))
@@ -145,14 +171,14 @@ def _row(coefficients: Array, offset: float) -> str:
         if x:
             size = "" if abs(x) == 1 else f"{abs(x):.9g} "
             text += (" - " if x < 0 else " + ") + f"{size}q{j + 1}"
-    if abs(offset) > VANISHING:
+    if offset:
         text += (" - " if offset < 0 else " + ") + _angle(abs(offset))
     text = text or " + 0"
     return text[3:] if text.startswith(" + ") else "-" + text[3:]
 
 
 def _angle(value: float) -> str:
-    for fraction in (1, 2, 4):
+    for fraction in (1, 2, 4) if value <= 2 * np.pi else ():
         turns = value * fraction / np.pi
         if round(turns) and turns == round(turns):
             whole = "pi" if round(turns) == 1 else f"{round(turns)} pi"
@@ -163,30 +189,51 @@ def _angle(value: float) -> str:
 class _Excess:
     """By how much the torque error of a relation exceeds what is allowed, per configuration."""
 
-    def __init__(self, relation: SymmetryRelation, gravity: GravityModel, allowed: Array) -> None:
-        self.relation, self.gravity, self.allowed = relation, gravity, allowed
+    def __init__(self, residual: Residual, allowed: Array) -> None:
+        self.residual, self.allowed = residual, allowed
 
-    def errors(self, q: Array) -> Array:
-        image = self.gravity.torque(self.relation.configuration(q))
-        return np.asarray(image - self.relation.torque(self.gravity.torque(q)))
+    def candidates(self) -> list[Array]:
+        """Return configurations that may be counterexamples, the most promising first."""
+        n = self.residual.n
+        if self.residual.is_slow:
+            return [largest_value(self.value, n, gradient=self.gradient)[1]]
+        tenths = np.random.default_rng(0).integers(-31, 32, (FAST_CANDIDATES, n)) / 10
+        return list(tenths[np.argsort(-self.value(tenths), kind="stable")])
 
     def value(self, q: Array) -> Array:
-        return np.asarray((np.abs(self.errors(q)) - self.allowed).max(axis=-1))
+        return np.asarray((np.abs(self.residual.values(q)) - self.allowed).max(axis=-1))
 
     def at(self, q: Array) -> float:
         return float(self.value(q[None, :])[0])
 
-    def sampled(self, limits: Array) -> float:
-        q = np.random.default_rng(0).uniform(-np.pi, np.pi, (32, self.gravity.n))
-        return float((np.abs(self.errors(q)) - limits).max())
-
     def gradient(self, q: Array) -> Array:
-        relation, gravity = self.relation, self.gravity
-        error = self.errors(q)
+        error = self.residual.values(q[None, :])[0]
         joint = int(np.argmax(np.abs(error) - self.allowed))
-        slope = gravity.stiffness(relation.configuration(q))[joint] @ relation.A
-        slope = slope - relation.Y[joint] * gravity.stiffness(q)[joint]
-        return np.asarray(np.sign(error[joint]) * slope)
+        return np.asarray(np.sign(error[joint]) * self.residual.gradient(q, joint))
+
+
+def _check_against_recursion(
+    relation: SymmetryRelation, gravity: GravityModel, bound: Array
+) -> None:
+    """Refuse a gravity model whose torque contradicts what was proved of its potential."""
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (RANDOM_CONFIGURATIONS, gravity.n))
+    error = gravity.torque(_images(relation, q)) - relation.torque(gravity.torque(q))
+    excess = float((np.abs(error) - bound).max())
+    if excess > gravity.rounding:
+        raise InputError(
+            "gravity model",
+            "difference of torque and potential",
+            f"{excess:.3g} N m",
+            f"at most {gravity.rounding:.3g} N m, which is rounding",
+        )
+
+
+def _images(relation: SymmetryRelation, q: Array) -> Array:
+    """Return the images of configurations (m, n) modulo 2 pi, each rounded about once."""
+    if np.all(np.abs(relation.A).sum(axis=1) + np.abs(relation.unwrapped_d) <= FEW_TURNS):
+        return relation.configuration(q)
+    A, d = exact_matrix(relation.A), exact_vector(relation.unwrapped_d)
+    return np.array([[nearest(angle(x)) for x in maps(A, d, exact_vector(point))] for point in q])
 
 
 def _tolerances(tolerance: ArrayLike, n: int) -> Array:
@@ -196,10 +243,3 @@ def _tolerances(tolerance: ArrayLike, n: int) -> Array:
             "verify_relation", "tolerance", tolerance, f"a number >= 0 [Nm], or {n} of them"
         )
     return np.array(np.broadcast_to(values, (n,)))
-
-
-def _certified(
-    relation: SymmetryRelation, potential: TrigonometricPolynomial, q: Array, allowed: Array
-) -> bool:
-    errors = certified_error(relation.A, relation.d, relation.Y, potential, q)
-    return bool(np.any(errors > allowed))
