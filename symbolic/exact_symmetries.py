@@ -32,7 +32,10 @@ def exact_symmetries(potential: TrigonometricPolynomial) -> SymmetryGroup:
         for d_sat in support.offsets(Y, s, 16 * limit):
             trivial = np.all(Y == 1) and np.all(s == 1) and not np.any(d_sat)
             exact = bool(trivial) or (proof is not None and proof.holds(Y, s, d_sat))
-            relations.append(support.relation(numeric, Y, s, d_sat, exact))
+            relation = support.relation(numeric, Y, s, d_sat, exact)
+            if exact and proof is not None:
+                relation = proof.rounded(relation, Y, s)
+            relations.append(relation)
     return SymmetryGroup(relations)
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy
-from flint import fmpq
+from flint import acb, arb, ctx, fmpq, fmpq_mat, fmpz_mat
 from numpy.typing import NDArray
 
 from symbolic.coefficients import is_zero
+from symbolic.symmetry_relation import SymmetryRelation
 from symbolic.trigonometric import TrigonometricPolynomial
 
 if TYPE_CHECKING:
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 
 Gauss = tuple[Any, Any]
 UNITS = ((1, 0), (0, 1), (-1, 0), (0, -1))
+PRECISION_BITS = 128
 
 
 class PhaseProof:
@@ -47,14 +50,7 @@ class PhaseProof:
         """Say whether an exact offset exists that rounds to ``d_sat``."""
         if not self.complete:
             return False
-        position, image = self.support.image(Y, s)
-        ratio = image * s / self.support.C
-        targets = []
-        for i, j in enumerate(position.tolist()):
-            c, sine = self.C[j]
-            # image[i] is C_j or its conjugate: recover which from the frequencies
-            conjugate = not np.array_equal(self.support.K[j], s[i] * Y * self.support.K[i])
-            targets.append((int(s[i]) * c, int(s[i]) * (-sine if conjugate else sine)))
+        targets, ratio = self._targets(Y, s)
         quarter = np.round(np.angle(ratio) / (np.pi / 2)).astype(np.int64) % 4
         units = all(
             _equal(t, _times(UNITS[p], c))
@@ -70,6 +66,63 @@ class PhaseProof:
         # the exact offsets are those of one coset each: the float d_sat must be one of them
         misfit = np.angle(np.exp(1j * (self.support.coordinates @ d_sat)) / ratio)
         return bool(np.all(np.abs(misfit) < 1e-9))
+
+    def rounded(
+        self, relation: SymmetryRelation, Y: NDArray[np.int64], s: NDArray[np.int64]
+    ) -> SymmetryRelation:
+        """Return a proved relation with each offset the float nearest to its exact value.
+
+        The exact offset near ``relation.d`` is computed in ball arithmetic. In the coordinates
+        y = B q it is unique: ``H d_sat = T phases + 2 pi z`` with the integers z that fit.
+        """
+        if self.symbolic or not len(self.support.B):
+            return relation
+        targets, _ = self._targets(Y, s)
+        lattice = self.support.lattice
+        with ctx.workprec(PRECISION_BITS):
+            turn = 2 * arb.pi()
+            phases = []
+            for i in lattice.rows:
+                x, y = _times(targets[i], (self.C[i][0], -self.C[i][1]))
+                phases.append(acb(arb(x), arb(y)).arg())
+            near = lattice.H @ relation.d_sat
+            theta = []
+            for row, there in zip(lattice.T.tolist(), near.tolist(), strict=True):
+                angle = sum((c * p for c, p in zip(row, phases, strict=True) if c), arb(0))
+                theta.append(angle + turn * round((there - float(angle.mid())) / float(turn.mid())))
+            exact = [
+                sum((arb(c) * x for c, x in zip(row, theta, strict=True)), arb(0))
+                for row in self._lift
+            ]
+            d = []
+            for old, new in zip(relation.d.tolist(), exact, strict=True):
+                turns = round((old - float(new.mid())) / float(turn.mid()))
+                d.append(float((new + turn * turns).mid()))
+        return SymmetryRelation(
+            relation.A, d, relation.Y, relation.basis, relation.exact, relation.bound
+        )
+
+    @cached_property
+    def _lift(self) -> list[list[fmpq]]:
+        """The rational matrix (n, r) from T phases + 2 pi z to d, identity on the rest."""
+        V, H = self.support.V, self.support.lattice.H
+        from_y = fmpq_mat(fmpz_mat(V.tolist())).inv().tolist()
+        to_y = fmpq_mat(fmpz_mat(H.tolist())).inv()
+        r = len(H)
+        return (fmpq_mat([row[:r] for row in from_y]) * to_y).tolist()
+
+    def _targets(
+        self, Y: NDArray[np.int64], s: NDArray[np.int64]
+    ) -> tuple[list[Gauss], NDArray[np.complex128]]:
+        """Return s_k C_{s_k Y k} exactly (up to a factor), and u_k in floats."""
+        position, image = self.support.image(Y, s)
+        targets = []
+        for i, j in enumerate(position.tolist()):
+            c, sine = self.C[j]
+            # image[i] is C_j or its conjugate: recover which from the frequencies
+            conjugate = not np.array_equal(self.support.K[j], s[i] * Y * self.support.K[i])
+            targets.append((int(s[i]) * c, int(s[i]) * (-sine if conjugate else sine)))
+        return targets, image * s / self.support.C
 
     def _products_agree(self, targets: list[Gauss]) -> bool:
         u = [_divide(t, c) for t, c in zip(targets, self.C, strict=True)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mpmath
 import numpy as np
 import pytest
 from flint import fmpq
@@ -9,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symbolic.trigonometric import TrigonometricPolynomial
-from verify.proof import prove_relation
+from verify.proof import OFFSET_ROUNDING, prove_relation
 
 TRIPLES = [(3, 4, 5), (5, 12, 13), (8, 15, 17), (7, 24, 25)]
 MANY = settings(max_examples=60, deadline=None, derandomize=True)
@@ -87,13 +88,63 @@ def test_a_frequency_of_two_needs_euclid():
     assert prove_relation([[1]], [0.0], [1], potential).holds
     assert prove_relation([[-1]], [0.0], [-1], potential).holds
     half_turn = prove_relation([[1]], [np.pi], [1], potential)
-    assert half_turn.reason == "exp(i k.d) differs from its exact value by 2 at k = (3)"
+    assert half_turn.reason == "d is 3.14 rad from the exact offset"
+
+
+PI_AND_MORE = np.pi + np.spacing(np.pi) * np.arange(-4, 5)
+
+
+@pytest.mark.parametrize("d", PI_AND_MORE)
+def test_only_a_float_within_one_unit_of_the_exact_offset_is_proved(d):
+    potential = TrigonometricPolynomial([[1]], [0.0], [1.0])
+    with mpmath.workdps(50):
+        away = float(abs(mpmath.mpf(float(d)) - mpmath.pi))
+    proof = prove_relation([[1]], [d], [-1], potential)
+    assert proof.holds == (away <= OFFSET_ROUNDING)
+    assert away <= proof.offset_error <= away * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("turns", [1.0, 1e3, 1e15, -1e15, 1e300])
+def test_turns_of_rounded_floats_are_no_whole_turns(turns):
+    potential = TrigonometricPolynomial([[1]], [0.0], [1.0])
+    d = 2 * np.pi * turns
+    with mpmath.workdps(400):
+        turn = 2 * mpmath.pi
+        away = mpmath.mpf(d) - turn * mpmath.nint(mpmath.mpf(d) / turn)
+    proof = prove_relation([[1]], [d], [1], potential)
+    assert proof.offset_error == pytest.approx(float(abs(away)), rel=1e-12)
+    assert proof.holds == (turns == 1.0)
+
+
+def test_offsets_along_free_directions_are_free():
+    # only q1 + q2 matters: any two offsets that add up to pi will do, however they are rounded
+    potential = TrigonometricPolynomial([[1, 1]], [0.0], [1.0])
+    assert prove_relation(np.eye(2), [1.0, np.pi - 1.0], [-1, -1], potential).holds
+    assert prove_relation(np.eye(2), [1e6, np.pi], [-1, -1], potential).holds is False
+    assert prove_relation([[3, 2], [-2, -1]], [2.5, -2.5], [1, 1], potential).holds
+
+
+@pytest.mark.parametrize("entry", [2**62, 2**63, 2**64, -(2**63), 10**45, 2.0**63, 1e308])
+def test_entries_of_any_size_are_exact(entry):
+    potential = TrigonometricPolynomial([[1, 0], [1, 1]], [0.0, 0.0], [18.4, 6.1])
+    A = np.array([[1, entry], [0, 1]], dtype=object)
+    assert not prove_relation(A, [0, 0], [1, 1], potential).holds
+    whole = np.array([[1, entry], [0, 1 - int(entry)]], dtype=object)  # q1 + q2 stays, q1 not
+    assert prove_relation(whole, [0, 0], [1, 1], potential).reason.endswith("k = (1, 0)")
+    single = TrigonometricPolynomial([[1, 1]], [0.0], [18.4])
+    assert prove_relation(whole, [0, 0], [1, 1], single).holds
+
+
+def test_a_real_matrix_is_proved_where_only_free_joints_feel_it():
+    potential = TrigonometricPolynomial([[0, 1]], [0.0], [1.0])
+    assert prove_relation([[0.3, 1e-9], [0, -1]], [0.1, 0], [1, 1], potential).holds
+    assert not prove_relation([[1, 0], [1e-300, 1]], [0, 0], [1, 1], potential).holds
 
 
 @pytest.mark.parametrize(
     ("A", "Y", "reason"),
     [
-        ([[0.5]], [1], "A is not an integer matrix"),
+        ([[0.5]], [1], "A^T k is neither Y k nor -Y k at k = (1)"),
         ([[2]], [1], "A^T k is neither Y k nor -Y k at k = (1)"),
     ],
 )
