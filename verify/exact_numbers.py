@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -14,8 +14,8 @@ from symbolic.errors import InputError
 PRECISION_BITS = 128
 """Bits of the balls; reducing an angle modulo a turn takes as many more as it has whole turns."""
 
-Exact = int | fmpq
-"""An integer of any size, or a rational that is none."""
+Exact: TypeAlias = int | Any
+"""An integer of any size, or a rational (``flint.fmpq``) that is none."""
 
 
 def exact(value: Any) -> Exact:
