@@ -49,7 +49,7 @@ class ArmBody:
     limits : (n, 2) array
         Joint limits [rad], infinite where there is none.
     efforts, velocities : (n,) arrays
-        Largest torques [N m] and speeds [rad/s]; huge where there is no limit.
+        Largest torques [N m] and speeds [rad/s]; infinite where there is no limit.
     damping, friction : (n,) arrays
         Viscous damping [N m s/rad] and Coulomb friction [N m].
     armature : (n,) array
@@ -118,8 +118,10 @@ class ArmBody:
             levers=np.array([model.inertias[j].lever for j in joints]),
             inertias=np.array([model.inertias[j].inertia for j in joints]),
             limits=np.array([_limits(model, j) for j in joints]),
-            efforts=np.array([model.upperEffortLimit[row[j]] for j in joints]),
-            velocities=np.array([model.upperVelocityLimit[row[j]] for j in joints]),
+            efforts=np.array([positive_or_none(model.upperEffortLimit[row[j]]) for j in joints]),
+            velocities=np.array(
+                [positive_or_none(model.upperVelocityLimit[row[j]]) for j in joints]
+            ),
             damping=np.array([model.damping[row[j]] for j in joints]),
             friction=np.array([model.upperDryFrictionLimit[row[j]] for j in joints]),
             armature=np.array([model.armature[row[j]] for j in joints]),
@@ -222,3 +224,14 @@ def _limits(model: pin.Model, joint: int) -> tuple[float, float]:
     if kind.shortname() in _CONTINUOUS:
         return -math.inf, math.inf
     return read_limits(model.lowerPositionLimit[kind.idx_q], model.upperPositionLimit[kind.idx_q])
+
+
+def positive_or_none(limit: float) -> float:
+    """Return a limit of torque or speed; 0 and -1 mean that there is none: infinity.
+
+    Examples
+    --------
+    >>> positive_or_none(87.0), positive_or_none(0.0), positive_or_none(-1.0)
+    (87.0, inf, inf)
+    """
+    return float(limit) if limit > 0 else math.inf

@@ -24,8 +24,8 @@ def check_body(body: ArmBody, where: str) -> None:
     Raises
     ------
     InputError
-        For numbers that are not finite, negative masses or damping, placements that are not
-        rotations, and inverted limits; naming the joint.
+        For numbers that are not finite, negative masses or damping, and placements that are not
+        rotations; naming the joint. Limits are looked at where they matter (`check_limits`).
     """
     for field, accepted in (
         ("masses", "finite masses [kg]"),
@@ -46,11 +46,8 @@ def check_body(body: ArmBody, where: str) -> None:
             raise InputError(where, f"mass of joint '{name}'", body.masses[i], "a number >= 0 [kg]")
         if body.damping[i] < 0:
             raise InputError(where, f"damping of joint '{name}'", body.damping[i], "a number >= 0")
-        lower, upper = body.limits[i]
-        if not lower < upper:  # NaN neither
-            raise InputError(
-                where, f"limits of joint '{name}'", f"[{lower}, {upper}]", "lower < upper [rad]"
-            )
+        if np.isnan(body.limits[i]).any():
+            raise InputError(where, f"limits of joint '{name}'", body.limits[i], "numbers [rad]")
         rotation = body.rotations[i]
         if abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0:
             raise InputError(

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -69,3 +72,44 @@ def one_turn(limits: ArrayLike) -> Array:
     return np.stack(
         [np.where(wide, middle - np.pi, low), np.where(wide, middle + np.pi, high)], axis=1
     )
+
+
+def check_limits(
+    limits: NDArray[np.float64], joint_names: Sequence[str], where: str, use: str
+) -> None:
+    """Refuse joint limits that leave no room, where they are needed.
+
+    Parameters
+    ----------
+    limits
+        Lower and upper limits (n, 2) [rad].
+    joint_names
+        One name per joint.
+    where
+        What to call the arm in an error.
+    use
+        What they are needed for.
+
+    Raises
+    ------
+    InputError
+        Naming every joint whose lower limit is not below its upper one.
+
+    Examples
+    --------
+    >>> check_limits(np.array([[-1.0, 1.0], [2.0, 2.0]]), ("a", "b"), "arm.urdf", "to move")
+    Traceback (most recent call last):
+    symbolic.errors.InputError: arm.urdf: limits of joint 'b' [2.0, 2.0] rad, needed to move, ...
+    """
+    wrong = [
+        f"'{name}' [{lower!r}, {upper!r}]"
+        for name, (lower, upper) in zip(joint_names, limits.tolist(), strict=True)
+        if not lower < upper
+    ]
+    if wrong:
+        raise InputError(
+            where,
+            f"limits of joint {', '.join(wrong)} rad, needed {use},",
+            "without room",
+            "lower < upper, or --lock of the joint",
+        )

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -13,13 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from symbolic.arm_body import ArmBody
 from symbolic.body_checks import check_body
+from symbolic.chosen_part import chosen_part, chosen_part_of_model, part_as_pinocchio_reads
 from symbolic.errors import InputError
 from symbolic.kinematic_tree import KinematicTree
+from symbolic.robot_options import RobotOptions
 from symbolic.snap_effect import torque_difference_bound
 from symbolic.snapped_bodies import snap_body, snap_urdf
 from symbolic.snapping import Snap
 from symbolic.urdf import Urdf, parse_urdf, urdf_text
-from symbolic.urdf_elements import MOVING
 
 Array = NDArray[np.float64]
 
@@ -31,6 +34,9 @@ _BUILTIN = {
     "ur5": "Universal Robots UR5, idealised inertias of ROS's ur_description",
     "panda": "Franka Emika Panda without hand, inertias identified by Gaz et al. 2019",
 }
+
+STANDARD_INPUT = "-"
+"""The robot that is read from standard input."""
 
 
 class BuiltinRobot(NamedTuple):
@@ -52,16 +58,19 @@ class Robot:
     model : pin.Model
         The arm that the toolkit works with: snapped, nq = nv = n, joints in Pinocchio's order.
     source_model : pin.Model
-        As Pinocchio reads the file, or the user's model itself: not snapped; a continuous joint
-        has two entries (cos, sin) in its configuration vector.
+        As Pinocchio reads the file and locks its joints, or the user's model itself: not snapped;
+        a continuous joint has two entries (cos, sin) in its configuration vector.
     joint_names : tuple of str
         One name per joint.
     limits : (n, 2) array
         Lower and upper joint limits [rad], infinite where a joint has none: continuous joints,
         and revolute ones without limits or with both zero. `symbolic.joint_limits` says which
-        angles to draw from then.
+        angles to draw from then. As in the file, even where they leave no room:
+        what needs room looks at them with `check_limits`.
     damping : (n,) array
         Viscous damping of the joints [N m s/rad], 0 where the file has none.
+    effort : (n,) array
+        Largest torques of the joints [N m]; infinite where the file has none (or 0, or -1).
     snaps : tuple of Snap
         What was snapped, in the order of the file.
     snap_bound : (n,) array
@@ -71,6 +80,8 @@ class Robot:
         What gravity sees of ``model``, in floats.
     digest : str
         Fingerprint of ``model`` (sha256, hex): the same in each run and on each machine.
+    options : RobotOptions
+        What it was loaded with.
     """
 
     name: str
@@ -79,10 +90,12 @@ class Robot:
     joint_names: tuple[str, ...]
     limits: Array
     damping: Array
+    effort: Array
     snaps: tuple[Snap, ...]
     snap_bound: Array
     tree: KinematicTree
     digest: str
+    options: RobotOptions
 
     @property
     def n(self) -> int:
@@ -135,17 +148,45 @@ def builtin_robots() -> tuple[BuiltinRobot, ...]:
     )
 
 
-def load_robot(spec: str | Path | pin.Model, *, snap: bool = True) -> Robot:
-    """Load a robot arm.
+def load_robot(
+    spec: str | Path | pin.Model | RobotOptions,
+    *,
+    snap: bool = True,
+    lock: Any = (),
+    joints: Any = None,
+    tip: str | None = None,
+    gravity: Any = None,
+    payload: Any = (),
+    allow_massless: bool = False,
+) -> Robot:
+    """Load a robot arm, or the part of a robot that is one.
 
     Parameters
     ----------
     spec
-        A built-in name (`builtin_robots`), the path of a URDF file, or a Pinocchio model.
+        A built-in name (`builtin_robots`), the path of a URDF file, ``-`` for one from standard
+        input, a Pinocchio model, or `RobotOptions`, which hold all that follows.
     snap
-        Set angles within 1e-5 rad of a multiple of pi/2 (and axes within that of a coordinate
-        axis) to exactly that; each such change is listed in ``snaps`` and bounded in
+        Set angles within 1e-5 rad of a multiple of pi/2 (and axes and gravity within that of a
+        coordinate axis) to exactly that; each such change is listed in ``snaps`` and bounded in
         ``snap_bound``. With False the arm is taken as Pinocchio reads it.
+    lock
+        Joints that stand still: a list of names or globs, each with ``=VALUE`` if wanted, or a
+        mapping from names or globs to positions [rad or m]. Without a position a joint stands at
+        0, or at the nearest place within its limits; one that follows a locked joint (mimic)
+        stands still too, where that one puts it.
+    joints
+        The joints that move; all others are locked.
+    tip
+        Name of a link. Joints that are not between the root and it are locked; what they carry
+        stays, as dead weight.
+    gravity
+        Gravitational acceleration in the frame of the root link, 3 numbers [m/s^2].
+    payload
+        What the robot carries: a mass [kg], ``"MASS[,x,y,z][@LINK]"`` with the centre in the frame
+        of the link [m], or a list of those; without a link on the last one that moves.
+    allow_massless
+        Whether to accept a robot in which no joint feels gravity because links have no mass.
 
     Returns
     -------
@@ -154,9 +195,10 @@ def load_robot(spec: str | Path | pin.Model, *, snap: bool = True) -> Robot:
     Raises
     ------
     InputError
-        For a file that is missing or not a URDF, joints that are not revolute, mimic joints, no
+        For a file that is missing or not a URDF, joints that are not revolute and not locked, no
         moving joint, negative masses, numbers that are not finite, links that do not form a
-        tree, inverted limits. The message names file, joint or link, and what is accepted.
+        tree, and options that do not fit the robot. The message names file, joint or link, and
+        what is accepted.
 
     Notes
     -----
@@ -170,20 +212,31 @@ def load_robot(spec: str | Path | pin.Model, *, snap: bool = True) -> Robot:
     (2, ('shoulder', 'elbow'), ())
     >>> robot.tree.masses
     array([5., 5.])
+    >>> load_robot("2r", lock={"elbow": 1.5}, payload=2).tree.masses
+    array([12.])
     """
+    if isinstance(spec, RobotOptions):
+        options = spec
+    elif not isinstance(spec, str | Path | pin.Model):
+        accepted = "a built-in name, the path of a URDF file or a pinocchio.Model"
+        raise InputError("robot", "type", type(spec).__name__, accepted)
+    else:
+        name = spec.name or "model" if isinstance(spec, pin.Model) else str(spec)
+        options = RobotOptions(name, snap, lock, joints, tip, gravity, payload, allow_massless)
     snaps: tuple[Snap, ...] = ()
     if isinstance(spec, pin.Model):
-        source, name = spec, spec.name or "model"
-        body = as_read = _checked_body(source, name)
-        if snap:
+        name = where = options.spec
+        source = chosen_part_of_model(spec, options, where)
+        body = as_read = _checked_body(source, where)
+        if options.snap:
             body, snaps = snap_body(as_read)
     else:
-        name, where, data = _read(spec)
-        urdf = parse_urdf(data, where)
-        name = name or urdf.name or Path(spec).stem
-        source = _pinocchio_model(urdf, where)
+        name, where, data = _read(options.spec)
+        urdf = chosen_part(parse_urdf(data, where), options, where)
+        name = name or urdf.name or Path(where).stem
+        source = part_as_pinocchio_reads(_pinocchio_model(urdf, where), urdf, where)
         body = as_read = _checked_body(source, where)
-        if snap:
+        if options.snap:
             body, snaps = snap_urdf(urdf, as_read.joint_names)
     bound = torque_difference_bound(as_read.tree(), body.tree()) if snaps else np.zeros(body.n)
     return Robot(
@@ -193,10 +246,12 @@ def load_robot(spec: str | Path | pin.Model, *, snap: bool = True) -> Robot:
         joint_names=body.joint_names,
         limits=body.limits,
         damping=body.damping,
+        effort=body.efforts,
         snaps=snaps,
         snap_bound=bound,
         tree=body.tree(),
         digest=body.digest(),
+        options=options,
     )
 
 
@@ -206,15 +261,13 @@ def _checked_body(model: pin.Model, where: str) -> ArmBody:
     return body
 
 
-def _read(spec: str | Path) -> tuple[str, str, bytes]:
+def _read(where: str) -> tuple[str, str, bytes]:
     """Return built-in name (or nothing), what to call the file in errors, and its contents."""
-    if not isinstance(spec, str | Path):
-        accepted = "a built-in name, the path of a URDF file or a pinocchio.Model"
-        raise InputError("robot", "type", type(spec).__name__, accepted)
-    where = str(spec)
     if where in _BUILTIN:
         return where, where, _builtin_file(where)
-    path = Path(spec)
+    if where == STANDARD_INPUT:
+        return "", "standard input", _standard_input(sys.stdin)
+    path = Path(where)
     accepted = f"a URDF file or one of {', '.join(_BUILTIN)}"
     try:
         if not path.exists():
@@ -229,12 +282,18 @@ def _read(spec: str | Path) -> tuple[str, str, bytes]:
         raise InputError(where, "file", f"not readable ({reason})", accepted) from None
 
 
+@lru_cache(maxsize=1)
+def _standard_input(stream: IO[str]) -> bytes:
+    """Return all that comes from a stream, which can be read but once."""
+    return stream.buffer.read()  # type: ignore[attr-defined]
+
+
 def _builtin_file(name: str) -> bytes:
     return files("symbolic").joinpath("robot_files", f"{name}.urdf").read_bytes()
 
 
 def _moving_joints(urdf: Urdf) -> int:
-    return sum(joint.kind in MOVING for joint in urdf.joints)
+    return sum(joint.moves for joint in urdf.joints)
 
 
 def _pinocchio_model(urdf: Urdf, where: str) -> pin.Model:

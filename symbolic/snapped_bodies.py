@@ -15,14 +15,16 @@ from symbolic.snapping import (
     Triple,
     clean_lengths,
     differs,
+    snap_angle,
     snap_angles,
     snap_axis,
+    snap_direction,
     snap_rotation,
     unit_axis,
 )
 from symbolic.urdf import Urdf
 from symbolic.urdf_body import body_from_urdf
-from symbolic.urdf_elements import UrdfJoint
+from symbolic.urdf_elements import REVOLUTE, UrdfJoint
 
 Array = NDArray[np.float64]
 
@@ -52,6 +54,14 @@ def snap_urdf(urdf: Urdf, joint_names: Sequence[str]) -> tuple[ArmBody, tuple[Sn
     snaps: list[Snap] = []
     body = body_from_urdf(urdf, joint_names)
     for i, joint in enumerate(urdf.joints):
+        if joint.locked is not None and joint.kind in REVOLUTE:
+            angle, right = joint.locked, snap_angle(joint.locked)
+            joint = replace(joint, locked=right)
+            urdf = _with_joint(urdf, i, joint)
+            if differs((angle,), (right,)):
+                new = body_from_urdf(urdf, joint_names)
+                _list(snaps, joint.name, "locked angle", (angle,), (right,), body, new)
+                body = new
         turned = replace(joint, rpy=snap_angles(joint.rpy))
         urdf = _with_joint(urdf, i, turned)
         if differs(joint.rpy, turned.rpy):
@@ -76,7 +86,7 @@ def snap_urdf(urdf: Urdf, joint_names: Sequence[str]) -> tuple[ArmBody, tuple[Sn
 
 
 def snap_body(body: ArmBody) -> tuple[ArmBody, tuple[Snap, ...]]:
-    """Return an arm with the placements and axes of its joints snapped, rounding noise removed.
+    """Return an arm with placements and axes of joints, and gravity snapped, without noise.
 
     Parameters
     ----------
@@ -99,6 +109,12 @@ def snap_body(body: ArmBody) -> tuple[ArmBody, tuple[Snap, ...]]:
         body = replace(turned, axes=_with(body.axes, i, np.array(new)))
         if differs(old, new):
             _list(snaps, name, "axis", old, new, turned, body)
+    given = _triple(body.gravity)
+    down = snap_direction(given)
+    level = replace(body, gravity=np.array(down))
+    if differs(given, down):
+        _list(snaps, "gravity", "direction", given, down, body, level)
+    body = level
     size = float(max(np.abs(body.translations).max(), np.abs(body.levers).max()))
     body = replace(
         body,
@@ -112,8 +128,8 @@ def _list(
     snaps: list[Snap],
     name: str,
     what: str,
-    before: Triple,
-    after: Triple,
+    before: tuple[float, ...],
+    after: tuple[float, ...],
     old: ArmBody,
     new: ArmBody,
 ) -> None:

@@ -32,20 +32,20 @@ class Snap:
     Attributes
     ----------
     joint : str
-        Name of the joint (or link, for the orientation of an inertia).
+        Name of the joint (link, for the orientation of an inertia; ``gravity`` for its direction).
     what : str
-        What was snapped: ``origin rpy``, ``axis``, ``inertial rpy`` or ``placement rpy`` (that
-        of a joint relative to the joint before it).
-    before, after : tuple of 3 floats
-        Roll, pitch, yaw [rad], or the unit axis.
+        What was snapped: ``origin rpy``, ``axis``, ``inertial rpy``, ``placement rpy`` (that of a
+        joint relative to the joint before it), ``locked angle`` or ``direction`` (of gravity).
+    before, after : tuple of floats
+        Roll, pitch, yaw [rad], the unit axis, the angle [rad], or gravity [m/s^2].
     effect : (n,) array
         Largest change of each joint's gravity torque by this snap, over all configurations [N m].
     """
 
     joint: str
     what: str
-    before: Triple
-    after: Triple
+    before: tuple[float, ...]
+    after: tuple[float, ...]
     effect: Array
 
 
@@ -82,6 +82,24 @@ def snap_axis(axis: Triple) -> Triple:
         x, y, z = (0.0 if abs(value) < ROUNDING else value for value in unit)
     else:
         x, y, z = (math.copysign(1.0, unit[i]) if i == main else 0.0 for i in range(3))
+    return x, y, z
+
+
+def snap_direction(vector: Triple) -> Triple:
+    """Return a vector along the coordinate axis within 1e-5 rad of it, or the vector itself.
+
+    Examples
+    --------
+    >>> snap_direction((0.0, 1e-9, -9.81)), snap_direction((0.0, 1.0, -9.81))
+    ((0.0, 0.0, -9.81), (0.0, 1.0, -9.81))
+    """
+    if not any(vector):
+        return vector
+    axis = snap_axis(vector)
+    if axis.count(0.0) < 2:
+        return vector
+    length = math.hypot(*vector) if differs(unit_axis(vector), axis) else max(map(abs, vector))
+    x, y, z = (value * length + 0.0 for value in axis)
     return x, y, z
 
 
@@ -125,6 +143,35 @@ def rotation_from_rpy(rpy: Triple) -> Array:
     pitch = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]], dtype=float)
     yaw = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]], dtype=float)
     return multiply(yaw, pitch, roll)
+
+
+def rotation_about(axis: Triple, angle: float) -> Array:
+    """Return the rotation by an angle about a unit axis, exact for right angles and frame axes.
+
+    Parameters
+    ----------
+    axis
+        Unit vector.
+    angle
+        Angle [rad].
+
+    Returns
+    -------
+    (3, 3) array
+
+    Examples
+    --------
+    >>> print(rotation_about((0.0, 0.0, -1.0), snap_angle(1.5708)))
+    [[ 0.  1.  0.]
+     [-1.  0.  0.]
+     [ 0.  0.  1.]]
+    """
+    cos, sin = _cos_sin(angle)
+    x, y, z = axis
+    u = np.array(axis)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    # about a frame axis 1 - u u^T has entries 0 and 1 only
+    return np.outer(u, u) + cos * (np.eye(3) - np.outer(u, u)) + sin * cross + 0.0
 
 
 def multiply(*matrices: Array) -> Array:
@@ -176,7 +223,7 @@ def snap_rotation(rotation: Array) -> tuple[Array, Triple, Triple]:
     return rotation_from_rpy(after), before, after
 
 
-def differs(before: Triple, after: Triple) -> bool:
+def differs(before: tuple[float, ...], after: tuple[float, ...]) -> bool:
     """Say whether something was snapped, other than rounding."""
     return max(abs(a - b) for a, b in zip(before, after, strict=True)) > ROUNDING
 

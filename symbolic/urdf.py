@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+import xml.sax
 from dataclasses import dataclass
 from typing import Any
 
 import defusedxml
-import defusedxml.ElementTree as SafeElementTree
+import defusedxml.sax
 
 from symbolic.errors import InputError
 from symbolic.joint_limits import UNLIMITED
-from symbolic.urdf_elements import MOVING, PRODUCTS, UrdfJoint, UrdfLink, UrdfReader
+from symbolic.urdf_elements import PRODUCTS, UrdfJoint, UrdfLink, UrdfReader
 
 
 @dataclass(frozen=True)
@@ -26,12 +27,15 @@ class Urdf:
         Name of the base link.
     links, joints : tuples
         In the order of the file.
+    gravity : tuple of 3 floats
+        Gravitational acceleration in the frame of the base link [m/s^2]; URDF has no field for it.
     """
 
     name: str
     root: str
     links: tuple[UrdfLink, ...]
     joints: tuple[UrdfJoint, ...]
+    gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)  # Pinocchio's
 
 
 def parse_urdf(data: bytes, where: str) -> Urdf:
@@ -52,8 +56,8 @@ def parse_urdf(data: bytes, where: str) -> Urdf:
     Raises
     ------
     InputError
-        For anything but a URDF of revolute, continuous and fixed joints that form one tree with
-        finite numbers, masses >= 0 and at least one moving joint.
+        For anything but a URDF of joints that form one tree with finite numbers, masses >= 0 and
+        at least one moving joint.
 
     Examples
     --------
@@ -67,19 +71,22 @@ def parse_urdf(data: bytes, where: str) -> Urdf:
     if robot.tag != "robot":
         raise InputError(where, "root element", f"<{robot.tag}>", "<robot>, that of a URDF file")
     reader = UrdfReader(where)
-    for child in robot:
-        if isinstance(child.tag, str) and "xacro" in child.tag:
-            raise InputError(where, "element", child.tag, "a URDF file expanded by xacro")
+    for element in robot.iter():
+        if element.tag.startswith("xacro:"):
+            raise InputError(where, "element", element.tag, "a URDF file expanded by xacro")
     links = tuple(reader.link(e) for e in robot.findall("link"))
     joints = tuple(reader.joint(e) for e in robot.findall("joint"))
     root = _root(links, joints, where)
-    if not any(joint.kind in MOVING for joint in joints):
+    if not any(joint.moves for joint in joints):
         raise InputError(where, "number of moving joints", 0, "at least one revolute joint")
     return Urdf(robot.get("name", ""), root, links, joints)
 
 
 def urdf_text(urdf: Urdf) -> str:
     """Return the URDF as text, for another program to parse; numbers are exact.
+
+    Joints are written as they are in the file, whether they are locked or not; who follows whom
+    is left out, and so is gravity.
 
     Examples
     --------
@@ -108,10 +115,10 @@ def urdf_text(urdf: Urdf) -> str:
             continue
         _add(element, "axis", xyz=joint.axis)
         _add(element, "dynamics", damping=(joint.damping,), friction=(joint.friction,))
-        limit = {"effort": (joint.effort,), "velocity": (joint.velocity,)}
+        limit = {"effort": (max(joint.effort, 0.0),), "velocity": (max(joint.velocity, 0.0),)}
         if joint.lower is not None and joint.upper is not None:
             limit |= {"lower": (joint.lower,), "upper": (joint.upper,)}
-        elif joint.kind == "revolute":  # left out they would read as zero
+        elif joint.kind in ("revolute", "prismatic"):  # left out they would read as zero
             limit |= {"lower": (-UNLIMITED,), "upper": (UNLIMITED,)}
         _add(element, "limit", **limit)
     return ElementTree.tostring(robot, encoding="unicode")
@@ -122,14 +129,37 @@ def _add(parent: ElementTree.Element, tag: str, **numbers: tuple[float, ...]) ->
     ElementTree.SubElement(parent, tag, text)
 
 
-def _parse_xml(data: bytes, where: str) -> Any:
+class _Elements(xml.sax.ContentHandler):
+    """Builds elements named as they are written: prefixes need not be declared, as in URDF."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.builder = ElementTree.TreeBuilder()
+
+    def startElement(self, name: str, attrs: Any) -> None:
+        self.builder.start(name, dict(attrs))
+
+    def endElement(self, name: str) -> None:
+        self.builder.end(name)
+
+    def characters(self, content: str) -> None:
+        self.builder.data(content)
+
+
+def _parse_xml(data: bytes, where: str) -> ElementTree.Element:
+    elements = _Elements()
     try:
-        return SafeElementTree.fromstring(data, forbid_dtd=True)
+        defusedxml.sax.parseString(data, elements, forbid_dtd=True)
+        return elements.builder.close()
     except defusedxml.DefusedXmlException as error:
         raise InputError(
             where, "XML", type(error).__name__, "a file without DTD, entities and references"
         ) from None
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
+    except xml.sax.SAXParseException as error:
+        place = f"line {error.getLineNumber()}, column {error.getColumnNumber()}"
+        found = f"not XML ({error.getMessage()}: {place})"
+        raise InputError(where, "content", found, "a URDF file") from None
+    except (xml.sax.SAXException, ValueError, LookupError, AssertionError) as error:
         raise InputError(where, "content", f"not XML ({error})", "a URDF file") from None
 
 

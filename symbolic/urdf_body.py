@@ -7,19 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from symbolic.arm_body import ArmBody
+from symbolic.arm_body import ArmBody, positive_or_none
 from symbolic.joint_limits import read_limits
-from symbolic.snapping import multiply, rotation_from_rpy, unit_axis
+from symbolic.snapping import multiply, rotation_about, rotation_from_rpy, unit_axis
 from symbolic.urdf import Urdf
 from symbolic.urdf_elements import UrdfJoint, UrdfLink
 
 Array = NDArray[np.float64]
 
-_STANDARD_GRAVITY = (0.0, 0.0, -9.81)  # Pinocchio's; URDF has no field for it
-
 
 def body_from_urdf(urdf: Urdf, joint_names: Sequence[str]) -> ArmBody:
-    """Merge links joined by fixed joints and return the arm.
+    """Merge links joined by fixed or locked joints and return the arm.
 
     Parameters
     ----------
@@ -59,12 +57,12 @@ def body_from_urdf(urdf: Urdf, joint_names: Sequence[str]) -> ArmBody:
         levers=np.array([lever for _, lever, _ in bodies]),
         inertias=np.array([inertia for _, _, inertia in bodies]),
         limits=np.array([read_limits(joint.lower, joint.upper) for joint in moving]),
-        efforts=np.array([joint.effort for joint in moving]),
-        velocities=np.array([joint.velocity for joint in moving]),
+        efforts=np.array([positive_or_none(joint.effort) for joint in moving]),
+        velocities=np.array([positive_or_none(joint.velocity) for joint in moving]),
         damping=np.array([joint.damping for joint in moving]),
         friction=np.array([joint.friction for joint in moving]),
         armature=np.zeros(len(moving)),
-        gravity=np.array(_STANDARD_GRAVITY),
+        gravity=np.array(urdf.gravity),
     )
 
 
@@ -85,7 +83,7 @@ def _places(urdf: Urdf, joint_names: Sequence[str]) -> dict[str, _Place]:
             if joint.name in index:
                 place[joint.child] = (index[joint.name], np.eye(3), np.zeros(3))
             else:
-                place[joint.child] = _behind(place[link], joint)
+                place[joint.child] = _moved(_behind(place[link], joint), joint)
             waiting.append(joint.child)
     return place
 
@@ -98,6 +96,17 @@ def _behind(place: _Place, joint: UrdfJoint) -> _Place:
         multiply(rotation, rotation_from_rpy(joint.rpy)),
         translation + multiply(rotation, np.array(joint.xyz)),
     )
+
+
+def _moved(place: _Place, joint: UrdfJoint) -> _Place:
+    """Return the place of the link behind a joint that stands still where it is locked."""
+    if not joint.locked:
+        return place
+    index, rotation, translation = place
+    axis = unit_axis(joint.axis)
+    if joint.kind == "prismatic":
+        return index, rotation, translation + multiply(rotation, joint.locked * np.array(axis))
+    return index, multiply(rotation, rotation_about(axis, joint.locked)), translation
 
 
 def _part(link: UrdfLink, rotation: Array, translation: Array) -> tuple[float, Array, Array]:

@@ -11,9 +11,10 @@ from symbolic.errors import InputError
 
 Triple = tuple[float, float, float]
 
-MOVING = ("revolute", "continuous")
+REVOLUTE = ("revolute", "continuous")
+"""Joints that can move here; others can only be locked."""
+KINDS = (*REVOLUTE, "prismatic", "planar", "floating", "fixed")
 PRODUCTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-_NOT_YET = ("prismatic", "floating", "planar")
 _ZERO: Triple = (0.0, 0.0, 0.0)
 
 
@@ -31,6 +32,8 @@ class UrdfLink:
         Centre of mass [m] and orientation [rad] of the inertial frame in the link's frame.
     products : tuple of 6 floats
         ixx, ixy, ixz, iyy, iyz, izz in the inertial frame [kg m^2].
+    shaped : bool
+        Whether the file says what the link looks like: then it is a thing, not a mere frame.
     """
 
     name: str
@@ -38,26 +41,40 @@ class UrdfLink:
     xyz: Triple = _ZERO
     rpy: Triple = _ZERO
     products: tuple[float, ...] = (0.0,) * 6
+    shaped: bool = False
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """A joint that follows another: ``multiplier`` times its position plus ``offset``."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
 
 
 @dataclass(frozen=True)
 class UrdfJoint:
-    """A revolute, continuous or fixed joint.
+    """A joint of any kind that URDF knows.
 
     Attributes
     ----------
     name, kind, parent, child : str
-        Name, ``revolute``, ``continuous`` or ``fixed``, and the links that it joins.
+        Name, one of `KINDS`, and the links that it joins.
     xyz, rpy : tuple of 3 floats
         Placement in the parent's frame [m], [rad].
     axis : tuple of 3 floats
         As in the file, of any length but zero.
     lower, upper : float or None
-        Limits [rad], None where the file has none.
+        Limits [rad or m], None where the file has none.
     effort, velocity : float
-        Limits of torque [N m] and speed [rad/s].
+        Limits of torque [N m] and speed [rad/s]; 0 or less: none.
     damping, friction : float
         Viscous damping [N m s/rad] and Coulomb friction [N m].
+    mimic : Mimic or None
+        The joint that it follows.
+    locked : float or None
+        Where it stands if it does not move [rad or m]; None: it moves, unless it is fixed.
     """
 
     name: str
@@ -73,6 +90,13 @@ class UrdfJoint:
     velocity: float = 0.0
     damping: float = 0.0
     friction: float = 0.0
+    mimic: Mimic | None = None
+    locked: float | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is neither fixed nor locked."""
+        return self.kind != "fixed" and self.locked is None
 
 
 class UrdfReader:
@@ -85,31 +109,28 @@ class UrdfReader:
         """Read a link."""
         name = self.text(element, "name", "a link")
         inertial = self.only(element, "inertial", f"link '{name}'")
+        shaped = any(element.find(tag) is not None for tag in ("visual", "collision"))
         if inertial is None:
-            return UrdfLink(name)
+            return UrdfLink(name, shaped=shaped)
         of = f"of link '{name}'"
         mass_element = self.need(inertial, "mass", f"inertial {of}")
         mass = self.number(mass_element, "value", f"mass {of}")
         if mass < 0:
             raise InputError(self.where, f"mass {of}", mass, "a number >= 0 [kg]")
-        inertia = self.need(inertial, "inertia", f"inertial {of}")
-        products = tuple(self.number(inertia, key, f"{key} {of}") for key in PRODUCTS)
+        inertia = self.only(inertial, "inertia", f"inertial {of}")
+        products: tuple[float, ...] = (0.0,) * 6  # gravity does not see it
+        if inertia is not None:
+            products = tuple(self.number(inertia, key, f"{key} {of}") for key in PRODUCTS)
         xyz, rpy = self.origin(inertial, f"inertial {of}")
-        return UrdfLink(name, mass, xyz, rpy, products)
+        return UrdfLink(name, mass, xyz, rpy, products, shaped)
 
     def joint(self, element: Any) -> UrdfJoint:
-        """Read a joint; refuse those that cannot be handled."""
+        """Read a joint."""
         name = self.text(element, "name", "a joint")
         of = f"of joint '{name}'"
         kind = self.text(element, "type", f"joint '{name}'")
-        if kind not in (*MOVING, "fixed"):
-            hint = " (not supported yet)" if kind in _NOT_YET else ""
-            accepted = "revolute, continuous or fixed"
-            raise InputError(self.where, f"type {of}", f"{kind}{hint}", accepted)
-        mimic = element.find("mimic")
-        if mimic is not None and kind != "fixed":  # a fixed joint follows nobody
-            accepted = "joints that move on their own (mimic joints are not supported yet)"
-            raise InputError(self.where, f"mimic {of}", f"'{mimic.get('joint')}'", accepted)
+        if kind not in KINDS:
+            raise InputError(self.where, f"type {of}", kind, ", ".join(KINDS))
         ends = {
             tag: self.text(self.need(element, tag, f"joint '{name}'"), "link", f"{tag} {of}")
             for tag in ("parent", "child")
@@ -121,7 +142,7 @@ class UrdfReader:
     def moving(self, element: Any, joint: UrdfJoint) -> UrdfJoint:
         """Add axis, limits and dynamics of a moving joint."""
         of = f"of joint '{joint.name}'"
-        numbers: dict[str, Any] = {}
+        numbers: dict[str, Any] = {"mimic": self.mimic(element, of)}
         axis = self.only(element, "axis", f"joint '{joint.name}'")
         if axis is not None:
             numbers["axis"] = self.triple(axis, "xyz", f"axis {of}")
@@ -148,14 +169,21 @@ class UrdfReader:
                 self.number(limit, key, f"{key} limit {of}", 0.0, math.inf)
                 for key in ("lower", "upper")
             )
-            if joint.kind == "revolute" and (lower or upper):  # both zero: not set
-                if not lower < upper:
-                    raise InputError(
-                        self.where, f"limits {of}", f"[{lower}, {upper}]", "lower < upper [rad]"
-                    )
+            if joint.kind in ("revolute", "prismatic") and (lower or upper):  # both zero: not set
                 numbers |= {"lower": lower, "upper": upper}
         return UrdfJoint(
             joint.name, joint.kind, joint.parent, joint.child, joint.xyz, joint.rpy, **numbers
+        )
+
+    def mimic(self, element: Any, of: str) -> Mimic | None:
+        """Read which joint a joint follows."""
+        mimic = self.only(element, "mimic", of.removeprefix("of "))
+        if mimic is None:
+            return None
+        return Mimic(
+            self.text(mimic, "joint", f"mimic {of}"),
+            self.number(mimic, "multiplier", f"multiplier of mimic {of}", 1.0),
+            self.number(mimic, "offset", f"offset of mimic {of}", 0.0),
         )
 
     def origin(self, element: Any, of: str) -> tuple[Triple, Triple]:

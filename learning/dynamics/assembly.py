@@ -16,6 +16,7 @@ from learning.dynamics.regularity import check_mass_matrix
 from learning.physics import PhysicsMode
 from learning.simulation.input import not_negative, vector
 from symbolic.errors import InputError
+from symbolic.joint_limits import check_limits
 from symbolic.robots import Robot
 
 _COULOMB_SHARE = 0.01  # of each joint's stiffness scale, which is about its largest gravity torque
@@ -109,6 +110,7 @@ def _coulomb(
 def _limits(robot: Robot, limits: ArrayLike | str | None) -> Array:
     n = robot.n
     if limits is None or (isinstance(limits, str) and limits == "file"):
+        check_limits(robot.limits, robot.joint_names, robot.name, "to move the arm")
         return np.array(robot.limits, dtype=float)
     if isinstance(limits, str):
         if limits == "none":

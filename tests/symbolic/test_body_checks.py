@@ -23,7 +23,6 @@ from tests.symbolic.test_arm_body import two_joints
         ("translations", -np.inf, "translations of joint 'first'"),
         ("translations", 1e200, "translations of joint 'first'"),
         ("rotations", 0.5, "placement of joint 'first'"),
-        ("limits", 1.0, "limits of joint 'first' is [1.0, 1.0]"),
         ("damping", -1.0, "damping of joint 'first'"),
         ("gravity", np.nan, "gravity is"),
     ],
