@@ -230,7 +230,7 @@ def globs(names: Sequence[str], others: Collection[str]) -> list[str]:
     Examples
     --------
     >>> globs(["l_finger_1", "l_finger_2", "lift"], ["l_arm_1", "l_arm_2"])
-    ['*_finger_*', 'lift']
+    ['l_finger_*', 'lift']
     """
     left, out = list(names), []
     while left:

@@ -115,7 +115,8 @@ def _part(link: UrdfLink, rotation: Array, translation: Array) -> tuple[float, A
     turn = multiply(rotation, rotation_from_rpy(link.rpy))
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     lever = translation + multiply(rotation, np.array(link.xyz))
-    return link.mass, lever, multiply(turn, tensor, turn.T.copy())
+    turned = multiply(turn, tensor, turn.T.copy())
+    return link.mass, lever, (turned + turned.T) / 2  # symmetric to the last bit
 
 
 def _merged(parts: list[tuple[float, Array, Array]]) -> tuple[float, Array, Array]:
