@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import sympy
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
+from symbolic.block_group import BlockGroup
 from symbolic.phase_proof import PhaseProof
+from symbolic.product_group import ProductGroup
 from symbolic.relations import SymmetryGroup
 from symbolic.support import Support, amplitude_classes
 from symbolic.trigonometric import TrigonometricPolynomial
@@ -24,19 +28,49 @@ def exact_symmetries(potential: TrigonometricPolynomial) -> SymmetryGroup:
     """
     numeric = specialised(potential)
     amplitude = numeric.amplitudes()
-    support = Support.of(numeric, amplitude > RELATIVE * amplitude.max(initial=0.0))
     limit = RELATIVE * float(amplitude.max(initial=0.0))
-    proof = PhaseProof(potential, support) if potential.cos.dtype == object else None
-    relations = []
-    for Y, s in support.structures(amplitude_classes(support.amplitude, limit)):
-        for d_sat in support.offsets(Y, s, 16 * limit):
-            trivial = np.all(Y == 1) and np.all(s == 1) and not np.any(d_sat)
-            exact = bool(trivial) or (proof is not None and proof.holds(Y, s, d_sat))
-            relation = support.relation(numeric, Y, s, d_sat, exact)
-            if exact and proof is not None:
-                relation = proof.rounded(relation, Y, s)
-            relations.append(relation)
-    return SymmetryGroup(relations)
+    kept = (amplitude > limit) & np.any(numeric.frequencies, axis=1)
+    complete = int(kept.sum()) == int(np.any(numeric.frequencies, axis=1).sum())
+    classes = amplitude_classes(np.abs(numeric.complex()[kept]), limit)
+    blocks = frequency_blocks(numeric.frequencies[kept])
+    groups = []
+    for joints in blocks:
+        rows = np.flatnonzero(kept)
+        own = np.any(numeric.frequencies[rows][:, joints], axis=1)
+        rows = rows[own]
+        part = _restricted(numeric, rows, joints)
+        support = Support.of(part, np.ones(len(rows), dtype=bool))
+        proof = None
+        if potential.cos.dtype == object:
+            proof = PhaseProof(_restricted(potential, rows, joints), support, complete)
+        groups.append(BlockGroup(support, classes[own], 16 * limit, proof, part))
+    return ProductGroup(numeric.n, blocks, groups, numeric)
+
+
+def frequency_blocks(K: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+    """Split joints into blocks that share no frequency; joints of no frequency are in none.
+
+    Examples
+    --------
+    >>> frequency_blocks(np.array([[1, 0, 1, 0], [0, 1, 0, 0]]))
+    [array([0, 2]), array([1])]
+    """
+    touched = np.unique(K != 0, axis=0).astype(np.int64)
+    _, label = connected_components(touched.T @ touched > 0, directed=False)
+    active = np.flatnonzero(touched.any(axis=0))
+    blocks = [active[label[active] == part] for part in np.unique(label[active])]
+    return sorted(blocks, key=lambda joints: int(joints[0]))
+
+
+def _restricted(
+    potential: TrigonometricPolynomial, rows: NDArray[np.int64], joints: NDArray[np.int64]
+) -> TrigonometricPolynomial:
+    """Return some terms of a potential as one of the joints that they have."""
+    if len(rows) == len(potential) and len(joints) == potential.n:
+        return potential
+    names = tuple(potential.names[j] for j in joints)
+    frequencies = potential.frequencies[np.ix_(rows, joints)]
+    return TrigonometricPolynomial(frequencies, potential.cos[rows], potential.sin[rows], names)
 
 
 def specialised(potential: TrigonometricPolynomial) -> TrigonometricPolynomial:

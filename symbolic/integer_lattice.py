@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from flint import fmpz_mat
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 IntMatrix = NDArray[np.int64]
 
@@ -32,9 +33,84 @@ def independent_rows(K: IntMatrix) -> list[int]:
     """
     if not K.size:
         return []
+    rank, step = int(np.count_nonzero(np.any(K, axis=0))), 4 * K.shape[1]  # the rank or more
+    rows = _greedy(K[:step])
+    while len(rows) < rank:
+        outside = np.flatnonzero(coordinates_in(K, rows)[1] == 0)
+        if not len(outside):
+            break
+        tried = np.concatenate([rows, outside[:step]])
+        rows = tried[_greedy(K[tried])].tolist()
+    return rows
+
+
+def _greedy(K: IntMatrix) -> list[int]:
     rref, _, rank = _to_flint(np.ascontiguousarray(K.T)).rref()
     reduced = _from_flint(rref)
     return [int(np.flatnonzero(reduced[i])[0]) for i in range(rank)]
+
+
+def coordinates_in(K: IntMatrix, rows: list[int]) -> tuple[IntMatrix, IntMatrix]:
+    """Write every row of ``K`` as a rational combination of independent ones, exactly.
+
+    Parameters
+    ----------
+    K : (m, n) int array
+    rows : list of int
+        Indices of r linearly independent rows.
+
+    Returns
+    -------
+    numerators : (m, r) int array
+    denominators : (m,) int array
+        ``K[i] = numerators[i] @ K[rows] / denominators[i]`` in lowest terms; denominator 0 for
+        rows outside the span of the independent ones.
+
+    Notes
+    -----
+    Thousands of rows take one product of float matrices; each row is then checked in integers,
+    which is a proof. Rows with other than small denominators are left to rational arithmetic.
+
+    Examples
+    --------
+    >>> coordinates_in(np.array([[2, 0], [0, 1], [1, 1]]), [0, 1])[1].tolist()
+    [1, 1, 2]
+    """
+    m, r = len(K), len(rows)
+    numerators, denominators = np.zeros((m, r), dtype=np.int64), np.zeros(m, dtype=np.int64)
+    if r == 0:
+        return numerators, np.where(np.any(K, axis=1), 0, 1)
+    H, right = K[rows].astype(float), K.astype(float)
+    guess = right @ np.linalg.pinv(H)
+    left = np.arange(m)
+    for denominator in range(1, _SMALL_DENOMINATORS + 1):
+        whole = np.round(denominator * guess[left])
+        # sums of integers below 2^53 are exact in floats
+        proved = np.all(whole @ H == denominator * right[left], axis=1)
+        proved &= np.abs(whole).max(axis=1, initial=0.0) < _EXACT_IN_FLOATS
+        done = left[proved]
+        numerators[done], denominators[done] = whole[proved].astype(np.int64), denominator
+        left = left[~proved]
+    near = np.abs(guess[left] @ H - right[left]).max(axis=1, initial=0.0) < 1e-3
+    for i in left[near].tolist():
+        numerators[i], denominators[i] = _rational_coordinates(K[i], K[rows])
+    return numerators, denominators
+
+
+_SMALL_DENOMINATORS = 12
+_EXACT_IN_FLOATS = 2.0**40
+
+
+def _rational_coordinates(row: IntMatrix, basis: IntMatrix) -> tuple[IntMatrix, int]:
+    """Return numerators and the common denominator, which is 0 outside the span."""
+    both = np.concatenate([basis, row[None]])
+    reduced, denominator, rank = _to_flint(np.ascontiguousarray(both.T)).rref()
+    if rank > len(basis):
+        return np.zeros(len(basis), dtype=np.int64), 0
+    column = _from_flint(reduced)[:rank, -1]
+    shared = int(np.gcd.reduce([*column.tolist(), int(denominator)]))
+    sign = 1 if int(denominator) > 0 else -1
+    return sign * column // shared, abs(int(denominator)) // shared
 
 
 def dependency_components(K: IntMatrix) -> NDArray[np.int64]:
@@ -51,16 +127,16 @@ def dependency_components(K: IntMatrix) -> NDArray[np.int64]:
     >>> dependency_components(np.array([[1, 0, 0], [0, 1, 0], [0, 1, 1], [0, 1, -1]]))
     array([0, 1, 1, 1])
     """
-    m = len(K)
-    label = np.arange(m)
-    if m:
-        rref, _, rank = _to_flint(np.ascontiguousarray(K.T)).rref()
-        reduced = _from_flint(rref)
-        # fundamental circuits of the pivot basis: column j with the pivots it needs
-        for i in range(rank):
-            members = np.flatnonzero(reduced[i])
-            label[np.isin(label, label[members])] = label[members].min()
-    return np.unique(label, return_inverse=True)[1].astype(np.int64)
+    rows = independent_rows(K)
+    label = -1 - np.arange(len(K))  # zero rows are circuits of their own
+    if rows:
+        used = coordinates_in(K, rows)[0] != 0  # fundamental circuits of the basis
+        circuits = np.unique(used, axis=0).astype(np.int64)
+        part = connected_components(circuits.T @ circuits > 0, directed=False)[1]
+        touched = used.any(axis=1)
+        label[touched] = part[used[touched].argmax(axis=1)]
+    _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
+    return np.argsort(np.argsort(first))[inverse].astype(np.int64)
 
 
 def hermite_with_transform(matrix: IntMatrix) -> tuple[IntMatrix, IntMatrix]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -33,12 +34,16 @@ class PhaseProof:
     from the few frequencies that generate it, u_k must equal the product of w_j^(c_kj), where
     c_k are the coordinates of k. Everything is arithmetic in Q(i), nothing is rounded.
 
-    A support that leaves out terms (amplitude below 1e-12 of the largest) is never proved.
+    A support that leaves out terms (amplitude below 1e-12 of the largest) is never proved;
+    ``complete`` says whether terms were left out elsewhere.
     """
 
-    def __init__(self, potential: TrigonometricPolynomial, support: Support) -> None:
+    def __init__(
+        self, potential: TrigonometricPolynomial, support: Support, complete: bool = True
+    ) -> None:
         self.support = support
-        self.complete = len(support.K) == int(np.any(potential.frequencies, axis=1).sum())
+        own = len(support.K) == int(np.any(potential.frequencies, axis=1).sum())
+        self.complete = complete and own
         index = {k.tobytes(): i for i, k in enumerate(np.ascontiguousarray(potential.frequencies))}
         place = [index[k.tobytes()] for k in np.ascontiguousarray(support.K)]
         # C_k up to the factor 1/2, which cancels
@@ -77,13 +82,13 @@ class PhaseProof:
         """
         if self.symbolic or not len(self.support.B):
             return relation
-        targets, _ = self._targets(Y, s)
         lattice = self.support.lattice
+        targets, _ = self._targets(Y, s, lattice.rows)
         with ctx.workprec(PRECISION_BITS):
             turn = 2 * arb.pi()
             phases = []
-            for i in lattice.rows:
-                x, y = _times(targets[i], (self.C[i][0], -self.C[i][1]))
+            for i, target in zip(lattice.rows, targets, strict=True):
+                x, y = _times(target, (self.C[i][0], -self.C[i][1]))
                 phases.append(acb(arb(x), arb(y)).arg())
             near = lattice.H @ relation.d_sat
             theta = []
@@ -112,17 +117,22 @@ class PhaseProof:
         return (fmpq_mat([row[:r] for row in from_y]) * to_y).tolist()
 
     def _targets(
-        self, Y: NDArray[np.int64], s: NDArray[np.int64]
+        self, Y: NDArray[np.int64], s: NDArray[np.int64], rows: Sequence[int] | None = None
     ) -> tuple[list[Gauss], NDArray[np.complex128]]:
-        """Return s_k C_{s_k Y k} exactly (up to a factor), and u_k in floats."""
+        """Return s_k C_{s_k Y k} exactly (up to a factor), and u_k in floats; all k by default."""
+        chosen = np.arange(len(s)) if rows is None else np.array(rows, dtype=np.int64)
         position, image = self.support.image(Y, s)
-        targets = []
-        for i, j in enumerate(position.tolist()):
-            c, sine = self.C[j]
-            # image[i] is C_j or its conjugate: recover which from the frequencies
-            conjugate = not np.array_equal(self.support.K[j], s[i] * Y * self.support.K[i])
-            targets.append((int(s[i]) * c, int(s[i]) * (-sine if conjugate else sine)))
-        return targets, image * s / self.support.C
+        position, image, s = position[chosen], image[chosen], s[chosen]
+        # image[i] is C_j or its conjugate: recover which from the frequencies
+        K = self.support.K
+        conjugate = np.any(K[position] != s[:, None] * Y * K[chosen], axis=1)
+        targets = [
+            (x if sign > 0 else -x, y if (sign > 0) != turned else -y)
+            for (x, y), sign, turned in zip(
+                (self.C[j] for j in position.tolist()), s.tolist(), conjugate.tolist(), strict=True
+            )
+        ]
+        return targets, image * s / self.support.C[chosen]
 
     def _products_agree(self, targets: list[Gauss]) -> bool:
         u = [_divide(t, c) for t, c in zip(targets, self.C, strict=True)]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +16,8 @@ from symbolic.integer_lattice import (
     generate_lattice,
     saturation,
 )
-from symbolic.relations import SymmetryRelation, wrap
 from symbolic.residuals import residual_bound
+from symbolic.symmetry_relation import SymmetryRelation, cleaned, lifted, wrap
 from symbolic.trigonometric import TrigonometricPolynomial
 
 Array = NDArray[np.float64]
@@ -114,21 +116,49 @@ class Support:
         extend(ones, label, label, 0)
         return found
 
+    @cached_property
+    def _index(self) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+        """Multipliers of a hash (uint64) of frequencies, the sorted hashes of +-K, their rows."""
+        both = np.concatenate([self.K, -self.K]).astype(np.uint64)
+        rng = np.random.default_rng(20180601)
+        while True:
+            odd = 2 * rng.integers(1, 2**62, self.K.shape[1], dtype=np.int64) + 1
+            multiplier = np.asarray(odd, dtype=np.uint64)
+            hashes = both @ multiplier
+            order = np.argsort(hashes, kind="stable")
+            if np.all(np.diff(hashes[order]) != 0):  # else a place could hide another
+                return multiplier, hashes[order], order
+
+    def locate(self, frequencies: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the row of each of ``frequencies`` (p, n) among K and then -K, -1 if in neither.
+
+        The hash only proposes; frequencies are compared entry by entry.
+        """
+        multiplier, hashes, order = self._index
+        if not len(order):
+            return np.full(len(frequencies), -1, dtype=np.int64)
+        place = np.searchsorted(hashes, frequencies.astype(np.uint64) @ multiplier)
+        row = order[np.minimum(place, len(order) - 1)]
+        m = len(self.K)
+        found = self.K[row % m] * np.where(row < m, 1, -1)[:, None]
+        return np.where(np.all(found == frequencies, axis=1), row, -1)
+
     def image(
         self, Y: NDArray[np.int64], s: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], NDArray[np.complex128]]:
-        """Return for each k the position of +-Y k, and the coefficient C_{s_k Y k}."""
-        index = {k.tobytes(): i for i, k in enumerate(np.ascontiguousarray(self.K))}
-        target = np.ascontiguousarray(self.K * Y)
-        position = np.empty(len(target), dtype=np.int64)
-        mirrored = np.zeros(len(target), dtype=bool)
-        for i, k in enumerate(target):
-            place = index.get(k.tobytes())
-            if place is None:
-                place, mirrored[i] = index[(-k).tobytes()], True
-            position[i] = place
+        """Return for each k the position of +-Y k, and the coefficient C_{s_k Y k}.
+
+        Raises
+        ------
+        KeyError
+            If Y does not map the frequencies to themselves.
+        """
+        row, m = self.locate(self.K * Y), len(self.K)
+        if np.any(row < 0):
+            raise KeyError("torque signs that do not keep the support")
+        position = row % m if m else row
         value = self.C[position]
-        return position, np.where(mirrored ^ (s < 0), np.conj(value), value)
+        return position, np.where((row >= m) ^ (s < 0), np.conj(value), value)
 
     # -- offsets and relations ------------------------------------------------------------------
 
@@ -139,15 +169,25 @@ class Support:
         _, image = self.image(Y, s)
         if np.any(np.abs(np.abs(image) - self.amplitude) > tolerance):
             return
-        phase = np.angle(image * s / self.C)
-        lattice = self.lattice
-        theta = lattice.T @ phase[list(lattice.rows)]
-        inverse = np.linalg.inv(lattice.H.astype(float)) if len(self.B) else np.zeros((0, 0))
-        for z in lattice.cosets():
-            d_sat = wrap(inverse @ (wrap(theta) + 2 * np.pi * z))
+        for z in self.lattice.cosets():
+            d_sat = self.offset(Y, s, z)
             residual = np.abs(image - s * self.C * np.exp(1j * (self.coordinates @ d_sat)))
             if np.all(residual <= tolerance):
                 yield d_sat
+
+    def offset(self, Y: NDArray[np.int64], s: NDArray[np.int64], z: NDArray[np.int64]) -> Array:
+        """Return d_sat that fits the frequencies generating the lattice, in coset ``z``.
+
+        ``z`` (r,) is one of ``lattice.cosets()``.
+        """
+        lattice, rows = self.lattice, list(self.lattice.rows)
+        if not rows:
+            return np.zeros(0)
+        image = self.C[self.locate(self.K[rows] * Y) % len(self.K)]
+        mirrored = (self.locate(self.K[rows] * Y) >= len(self.K)) ^ (s[rows] < 0)
+        phase = np.angle(np.where(mirrored, np.conj(image), image) * s[rows] / self.C[rows])
+        inverse = np.linalg.inv(lattice.H.astype(float))
+        return wrap(inverse @ (wrap(lattice.T @ phase) + 2 * np.pi * z))
 
     def linear_part(self, Y: NDArray[np.int64], s: NDArray[np.int64]) -> Array:
         """Return A_sat (r, r) with k A = s_k k Y for every frequency k (as a row)."""
@@ -157,18 +197,11 @@ class Support:
         target = (s[rows, None] * self.K[rows] * Y) @ inverse[:, :r]
         if not r:
             return np.zeros((0, 0))
-        return _cleaned(np.linalg.solve(self.coordinates[rows].astype(float), target))
+        return cleaned(np.linalg.solve(self.coordinates[rows].astype(float), target))
 
     def lift(self, A_sat: Array, d_sat: Array) -> tuple[Array, Array]:
         """Return (A, d) in q: the map of y = B q, and identity on the completing coordinates."""
-        n, r = self.K.shape[1], len(self.B)
-        V = self.V.astype(float)
-        block = np.eye(n)
-        block[:r, :r] = A_sat
-        inverse = np.round(np.linalg.inv(V))
-        A = inverse @ block @ V
-        d = inverse[:, :r] @ d_sat
-        return _cleaned(A), wrap(d)
+        return lifted(self.V.astype(float), A_sat, d_sat)
 
     def relation(
         self,
@@ -183,9 +216,3 @@ class Support:
         n = self.K.shape[1]
         bound = np.zeros(n) if exact else residual_bound(potential, A, d, Y)
         return SymmetryRelation(A, d, Y, self.B, exact, bound)
-
-
-def _cleaned(matrix: Array) -> Array:
-    """Return a matrix with whole numbers for entries that only rounding keeps from them."""
-    whole = np.round(matrix)
-    return np.where(np.abs(matrix - whole) < 1e-9, whole, matrix) + 0.0

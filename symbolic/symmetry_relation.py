@@ -219,3 +219,22 @@ def identity(n: int, basis: ArrayLike | None = None) -> SymmetryRelation:
     return SymmetryRelation(
         np.eye(n), np.zeros(n), np.ones(n), basis, exact=True, bound=np.zeros(n)
     )
+
+
+def lifted(V: Array, A_sat: Array, d_sat: Array) -> tuple[Array, Array]:
+    """Return the map (A, d) of q that is (A_sat, d_sat) on y = B q.
+
+    On the coordinates that complete B, the first rows of the unimodular ``V``, to a basis it is
+    the identity.
+    """
+    n, r = len(V), len(A_sat)
+    block = np.eye(n)
+    block[:r, :r] = A_sat
+    inverse = np.round(np.linalg.inv(V))
+    return cleaned(inverse @ block @ V), wrap(inverse[:, :r] @ d_sat)
+
+
+def cleaned(matrix: Array) -> Array:
+    """Return a matrix with whole numbers for entries that only rounding keeps from them."""
+    whole = np.round(matrix)
+    return np.where(np.abs(matrix - whole) < 1e-9, whole, matrix) + 0.0

@@ -142,7 +142,7 @@ def relations_document(
     >>> document["order"], document["relations"][0]["M"]
     (1, [[-1]])
     """
-    members = list(relations)
+    members = list(relations.listed() if isinstance(relations, SymmetryGroup) else relations)
     basis = members[0].basis
     document: dict[str, Any] = {"joints": list(joint_names)}
     if isinstance(relations, SymmetryGroup):
