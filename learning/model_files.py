@@ -9,6 +9,7 @@ import json
 import os
 import zipfile
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,8 @@ CLASSES = {
     "SymmetricGaussianProcess": "learning.learners.gaussian_process",
 }
 """Learners that can be saved, and where they live."""
+PARTS = ("settings", "state")
+"""What parameters consist of."""
 _DAMAGE = (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error)
 # what zipfile and NumPy's header parser raise on flipped bits
 _NUMPY_DAMAGE = (NotImplementedError, RuntimeError, KeyError, SyntaxError, TypeError)
@@ -150,19 +153,45 @@ def load_model(path: str | Path, robot: Any = None) -> SavedModel:
     return model
 
 
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+_FIELDS: dict[str, tuple[Callable[[Any], bool], str]] = {
+    "robot": (_is_text, "a name"),
+    "digest": (_is_text, "the fingerprint of the robot"),
+    "joints": (
+        lambda v: isinstance(v, list) and len(v) > 0 and all(map(_is_text, v)),
+        "a list of names",
+    ),
+    "parameters": (
+        lambda v: (
+            isinstance(v, dict) and all(isinstance(v.get(k), dict) for k in ("settings", "state"))
+        ),
+        "an object with the objects settings and state",
+    ),
+    "arrays": (lambda v: v is None or _is_text(v), "the digest of the arrays"),
+    "notes": (lambda v: isinstance(v, dict), "an object"),
+}
+"""What must stand in a saved model of any kind, beside schema and kind."""
+
+
 def _document(file: Path) -> dict[str, Any]:
     try:
         document = json.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(file, "file", error.strerror, "a saved model") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(file, "file", "not JSON", "a saved model") from error
     if not isinstance(document, dict) or not {"schema", "kind", "parameters"} <= set(document):
         raise InputError(file, "content", "no saved model", "the model.json of a run")
-    if document["schema"] != SCHEMA:
+    if document["schema"] != SCHEMA or isinstance(document["schema"], bool):
         raise InputError(file, "schema", document["schema"], f"{SCHEMA} (newer versions read more)")
-    if document["kind"] not in CLASSES:
+    if not isinstance(document["kind"], str) or document["kind"] not in CLASSES:
         raise InputError(file, "kind", document["kind"], f"one of {', '.join(sorted(CLASSES))}")
+    for field, (fits, accepted) in _FIELDS.items():
+        if not fits(document.get(field)):
+            raise InputError(file, field, document.get(field, "missing"), accepted)
     return document
 
 

@@ -74,6 +74,8 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
         if not len(support.K):
             continue
         candidates = _candidates(numeric, support, tolerance)
+        if not candidates or not _is_identity(candidates[0]):
+            continue  # not even the identity: rounding is more than the tolerance
         signature = (support.B.tobytes(), *sorted(_key(c) for c in candidates))
         if signature in seen:
             continue

@@ -99,6 +99,14 @@ class TrigonometricPolynomial:
         f = self.to_float()
         return f.frequencies.astype(float), f.cos, f.sin
 
+    @cached_property
+    def _coefficients(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Cosines and sines as floats; those too small for one are zero, but still terms."""
+        k, a, b = self._numeric
+        if len(k) < len(self):
+            a, b = (np.array([to_float(x) for x in part]) for part in (self.cos, self.sin))
+        return a, b
+
     def to_float(self) -> TrigonometricPolynomial:
         """Return the polynomial with float64 coefficients (correctly rounded from rationals).
 
@@ -140,7 +148,7 @@ class TrigonometricPolynomial:
 
     def complex(self) -> NDArray[np.complex128]:
         """Return C_k = (cos_k - i sin_k) / 2, so that f = sum over +-k of C_k exp(i k.q)."""
-        _, a, b = self._numeric
+        a, b = self._coefficients
         return np.asarray((a - 1j * b) / 2, dtype=np.complex128)
 
     # -- algebra --------------------------------------------------------------------------------
@@ -211,8 +219,7 @@ class TrigonometricPolynomial:
 
     def amplitudes(self) -> NDArray[np.float64]:
         """Return sqrt(cos_k^2 + sin_k^2), shape (m,)."""
-        _, a, b = self._numeric
-        return np.hypot(a, b)
+        return np.hypot(*self._coefficients)
 
     def sup_bound(self) -> float:
         """Return a bound on |f(q)| over all q (the sum of amplitudes)."""

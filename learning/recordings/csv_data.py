@@ -14,6 +14,12 @@ import numpy as np
 from learning.arm import Vector
 from symbolic.errors import InputError
 
+LARGEST = 1e9
+"""Largest angle [rad] or torque [N m] taken for a measured one; of larger angles no digit is left
+behind the point that says where the joint is."""
+SMALLEST_TORQUE = 1e-12
+"""If no torque is larger [N m], nothing was measured: this is below the noise of any sensor."""
+
 
 @dataclass(frozen=True, eq=False)
 class StaticSamples:
@@ -78,6 +84,10 @@ def read_csv(path: str | Path, joint_names: Sequence[str]) -> StaticSamples:
     if not rows:
         raise InputError(path, "number of samples", 0, "at least one line below the header")
     table = np.array(rows, dtype=np.float64)
+    largest = float(np.abs(table[:, n:]).max())
+    if 0.0 < largest < SMALLEST_TORQUE:
+        accepted = f"torques [N m] above {SMALLEST_TORQUE:g}, or zeros"
+        raise InputError(path, "largest torque", f"{largest:g}", accepted)
     return StaticSamples(table[:, :n].copy(), table[:, n:].copy())
 
 
@@ -173,7 +183,8 @@ def _number(path: str | Path, line: int, column: str, entry: str) -> float:
         value = float(entry) if entry.isascii() and "_" not in entry else math.nan
     except ValueError:
         value = math.nan
-    if not math.isfinite(value):
+    if not abs(value) <= LARGEST:
         where = f"{path}, line {line}"
-        raise InputError(where, f"column {column!r}", repr(entry), "a finite number")
+        accepted = f"a finite number of at most {LARGEST:g}"
+        raise InputError(where, f"column {column!r}", repr(entry), accepted)
     return value

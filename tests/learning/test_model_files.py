@@ -213,3 +213,27 @@ def test_a_missing_file_is_named(name, tmp_path):
     (tmp_path / name).unlink()
     with pytest.raises(InputError, match=name):
         load_model(tmp_path)
+
+
+VALUES = [None, True, 0, -1.5, 10**400, "x", "", [], [[]], [1], {}, {"settings": 1, "state": []}]
+
+
+@pytest.mark.parametrize(
+    "field", ["schema", "kind", "robot", "digest", "joints", "parameters", "arrays", "notes"]
+)
+def test_a_field_of_another_kind_is_refused_by_name(tmp_path, field):
+    learner = learner_by_name("recursive-least-squares", None, LearningTask(2, 8, False, "2r"))
+    q, torque = samples(0, 8)
+    path = saved(tmp_path, learner.fit(q, torque)) / "model.json"
+    document = json.loads(path.read_text())
+    fine = {"robot": ["x", ""], "digest": ["x", ""], "arrays": [None], "notes": [{}, VALUES[-1]]}
+    for value in VALUES:
+        path.write_text(json.dumps({**document, field: value}))
+        if value in fine.get(field, []):
+            load_model(path)
+            continue
+        # what stands in parameters is said by the learner, which is asked for a torque
+        asked = "content" if field in ("parameters", "arrays") else field
+        with pytest.raises(InputError) as refused:
+            load_model(path)
+        assert refused.value.field in (field, asked)

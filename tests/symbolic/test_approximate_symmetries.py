@@ -1,6 +1,7 @@
 """Approximate groups: bounds are never exceeded, groups grow with the tolerance."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -69,3 +70,15 @@ def test_one_small_phase_error_is_averaged_away():
     assert group.order == 8
     assert 0 < max(r.bound.max() for r in group) <= 0.05
     assert primary_symmetries(U, tolerance=1e-5).order == primary_symmetries(U).order
+
+
+@pytest.mark.parametrize("tolerance", [1e-20, 1e-300, 5e-324])
+def test_a_tolerance_below_rounding_gives_the_exact_group(tolerance):
+    """Offsets that are no multiples of pi: not even the identity errs by less than rounding."""
+    phases = np.array([0.3, 2.2e-5, 1.7])
+    U = TrigonometricPolynomial(
+        [[1, 0, 0], [1, 1, 0], [1, 1, 1]], 18.4 * np.cos(phases), 18.4 * np.sin(phases)
+    )
+    exact = primary_symmetries(U).order
+    assert [g.order for g in maximal_groups(U, tolerance)] == [exact]
+    assert primary_symmetries(U, tolerance).order == exact

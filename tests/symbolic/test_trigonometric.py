@@ -186,3 +186,13 @@ def test_significant_drops_what_stands_for_rounding():
     assert len(f.significant(1e-14)) == 3
     symbolic = TrigonometricPolynomial([[1]], np.array([X], "O"), np.array([X], "O"))
     assert symbolic.significant() is symbolic
+
+
+def test_terms_too_small_for_a_float_are_still_terms():
+    exact = np.array([fmpq(1), fmpq(1, 10**400), fmpq(0)], dtype=object)
+    f = TrigonometricPolynomial([[1, 0], [0, 1], [1, 1]], exact, exact[::-1].copy())
+    for values in (f.amplitudes(), f.complex()):
+        assert values.shape == (len(f),)
+    assert sorted(f.amplitudes()) == [0.0, 1.0, 1.0]
+    assert len(f.significant()) == 2
+    np.testing.assert_array_equal(f.gradient_bound(), [2.0, 1.0])

@@ -9,14 +9,15 @@ from hypothesis.extra.numpy import arrays
 from learning.recordings.csv_data import StaticSamples, read_csv, write_csv
 from symbolic.errors import InputError
 
-FINITE = st.floats(allow_nan=False, allow_infinity=False)
+MEASURED = st.floats(-1e9, 1e9)
 JOINTS = ("shoulder", "elbow, left", 'wrist "3"')
 
 
 @st.composite
 def samples_of(draw):
     m, n = draw(st.integers(1, 6)), draw(st.integers(1, 3))
-    q, tau = (draw(arrays(np.float64, (m, n), elements=FINITE)) for _ in range(2))
+    q, tau = (draw(arrays(np.float64, (m, n), elements=MEASURED)) for _ in range(2))
+    tau[0, 0] = draw(st.sampled_from([1.0, -1e-12, 1e9]))  # not all are next to nothing
     return StaticSamples(q, tau), JOINTS[:n]
 
 
@@ -66,6 +67,8 @@ REFUSED = {
     "semicolons": ("q1;q2;tau1;tau2\n0;0;1;1\n", "line 1: header is 'q1;q2;tau1;tau2'"),
     "short line": (GOOD + "\n0,0,1,1\n0,0,1\n", "line 3: number of columns is 3; accepted: 4"),
     "long line": (GOOD + "\n0,0,1,1,2\n", "line 2: number of columns is 5; accepted: 4"),
+    "huge": (GOOD + "\n0,1e300,1,1\n", "column 'q2' is '1e300'; accepted: a finite number of at"),
+    "tiny": ("q1,q2,tau1,tau2\n1,1,3e-308,-4e-310\n", "largest torque is 3e-308; accepted: torq"),
     "nan": (GOOD + "\n0,nan,1,1\n", "line 2: column 'q2' is 'nan'; accepted: a finite number"),
     "inf": (GOOD + "\n0,0,1,-inf\n", "line 2: column 'tau2' is '-inf'"),
     "too large": (GOOD + "\n0,0,1e999,1\n", "line 2: column 'tau1' is '1e999'"),
