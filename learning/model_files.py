@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import importlib
 import io
 import json
 import os
@@ -16,19 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from learning.learners.by_name import SAVED_LEARNERS, learner_class
 from learning.recordings.run_info import software_versions
 from symbolic.errors import InputError
 
 SCHEMA = 1
-CLASSES = {
-    "EquivariantTrigonometric": "learning.learners.trigonometric",
-    "FeedForwardNetwork": "learning.learners.network",
-    "LocalLinearMap": "learning.learners.local_linear_map",
-    "RecursiveLeastSquares": "learning.learners.recursive_least_squares",
-    "StaticRegressor": "learning.learners.static_regressor",
-    "SymmetricGaussianProcess": "learning.learners.gaussian_process",
-}
-"""Learners that can be saved, and where they live."""
 PARTS = ("settings", "state")
 """What parameters consist of."""
 _DAMAGE = (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error)
@@ -82,8 +73,8 @@ def save_model(model: SavedModel, folder: str | Path) -> Path:
     taken for one.
     """
     kind = type(model.learner).__name__
-    if kind not in CLASSES:
-        raise InputError("model", "learner", kind, f"one of {', '.join(sorted(CLASSES))}")
+    if kind not in SAVED_LEARNERS:
+        raise InputError("model", "learner", kind, f"one of {', '.join(SAVED_LEARNERS)}")
     directory = Path(folder)
     archive = io.BytesIO()
     np.savez(archive, **model.learner.to_arrays())
@@ -132,7 +123,7 @@ def load_model(path: str | Path, robot: Any = None) -> SavedModel:
         file = file / "model.json"
     document = _document(file)
     arrays = _arrays(file.with_suffix(".npz"), document.get("arrays"))
-    kind = getattr(importlib.import_module(CLASSES[document["kind"]]), document["kind"])
+    kind = learner_class(document["kind"])
     try:
         parameters = document["parameters"]
         if robot is not None and "robot" in parameters["settings"]:
@@ -187,8 +178,8 @@ def _document(file: Path) -> dict[str, Any]:
         raise InputError(file, "content", "no saved model", "the model.json of a run")
     if document["schema"] != SCHEMA or isinstance(document["schema"], bool):
         raise InputError(file, "schema", document["schema"], f"{SCHEMA} (newer versions read more)")
-    if not isinstance(document["kind"], str) or document["kind"] not in CLASSES:
-        raise InputError(file, "kind", document["kind"], f"one of {', '.join(sorted(CLASSES))}")
+    if not isinstance(document["kind"], str) or document["kind"] not in SAVED_LEARNERS:
+        raise InputError(file, "kind", document["kind"], f"one of {', '.join(SAVED_LEARNERS)}")
     for field, (fits, accepted) in _FIELDS.items():
         if not fits(document.get(field)):
             raise InputError(file, field, document.get(field, "missing"), accepted)

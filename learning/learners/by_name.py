@@ -125,6 +125,59 @@ EQUIVARIANT_LEARNERS = frozenset({"recursive-least-squares", "trigonometric", "n
 """Learners whose predictions obey the relations they exploit exactly, to rounding."""
 
 
+SAVED_LEARNERS = (
+    "EquivariantTrigonometric",
+    "FeedForwardNetwork",
+    "LocalLinearMap",
+    "RecursiveLeastSquares",
+    "StaticRegressor",
+    "SymmetricGaussianProcess",
+)
+"""Classes of learners, by the names that saved models give them."""
+
+
+def learner_class(name: str) -> Any:
+    """Return a class of `SAVED_LEARNERS`, imported when it is first asked for.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name.
+
+    Examples
+    --------
+    >>> learner_class("LocalLinearMap").__name__
+    'LocalLinearMap'
+    """
+    match name:
+        case "EquivariantTrigonometric":
+            from learning.learners.trigonometric import EquivariantTrigonometric
+
+            return EquivariantTrigonometric
+        case "FeedForwardNetwork":
+            from learning.learners.network import FeedForwardNetwork
+
+            return FeedForwardNetwork
+        case "LocalLinearMap":
+            from learning.learners.local_linear_map import LocalLinearMap
+
+            return LocalLinearMap
+        case "RecursiveLeastSquares":
+            from learning.learners.recursive_least_squares import RecursiveLeastSquares
+
+            return RecursiveLeastSquares
+        case "StaticRegressor":
+            from learning.learners.static_regressor import StaticRegressor
+
+            return StaticRegressor
+        case "SymmetricGaussianProcess":
+            from learning.learners.gaussian_process import SymmetricGaussianProcess
+
+            return SymmetricGaussianProcess
+        case _:
+            raise InputError("learner", "class", name, ", ".join(SAVED_LEARNERS))
+
+
 def check_learner(name: str) -> str:
     """Return the name of a learner, checked.
 

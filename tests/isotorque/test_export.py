@@ -8,13 +8,14 @@ import pytest
 from isotorque.cli.main import status
 from learning.export.array_files import read_export
 from learning.export.torque_form import evaluate
+from learning.learners.by_name import SAVED_LEARNERS
 from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.local_linear_map import LocalLinearMap
 from learning.learners.network import FeedForwardNetwork
 from learning.learners.recursive_least_squares import RecursiveLeastSquares
 from learning.learners.static_regressor import StaticRegressor
 from learning.learners.trigonometric import EquivariantTrigonometric
-from learning.model_files import CLASSES, SavedModel, save_model
+from learning.model_files import SavedModel, save_model
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot
 from tests.learning.export.compiled import build, call, needs_cc
@@ -83,7 +84,7 @@ def test_a_saved_model_in_all_three_forms(learner, kind, export, saved, tmp_path
 
 
 def test_every_kind_that_can_be_saved_is_tried():
-    assert {type(learner).__name__ for learner, _ in LEARNERS} == set(CLASSES)
+    assert {type(learner).__name__ for learner, _ in LEARNERS} == set(SAVED_LEARNERS)
 
 
 @needs_cc

@@ -1,0 +1,1 @@
+"""Contracts on imports that Import Linter does not know by itself."""
