@@ -64,6 +64,10 @@ def derive(
                     )
                 ],
                 "snap_bound": loaded.snap_bound,
+                "snapped": [
+                    {"joint": snap.joint, "what": snap.what, "effect": snap.effect}
+                    for snap in loaded.snaps
+                ],
                 "max_error_vs_pinocchio": gravity.max_error_vs_pinocchio,
                 "seconds": seconds,
             }
@@ -75,3 +79,7 @@ def derive(
     else:
         print(gravity_text(gravity))
         say(f"largest difference from Pinocchio: {gravity.max_error_vs_pinocchio:.3g} N m", quiet)
+        # Pinocchio reads the file as it is written: what was snapped in it is the difference
+        for snap in sorted(loaded.snaps, key=lambda snap: -snap.effect.max()):
+            effect = f"changes torques by at most {snap.effect.max():.3g} N m"
+            say(f"  snapped: {snap.joint}: {snap.what}, {effect}", quiet)

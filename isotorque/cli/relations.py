@@ -78,7 +78,7 @@ def relations(
         samples, joints = reader.samples(phase=PHASE), reader.joint_names
         if not len(samples.q):  # not made by `discover`: all that ever rested
             samples = reader.samples()
-        claims = () if candidates is None else claimed_relations(candidates, reader)
+        claims = () if candidates is None else claimed_relations(candidates, run, reader)
         limits = recorded_limits(reader)
     judged = judge_candidates(claims, samples.q, samples.tau, noise=noise)
     learned = learn_relations(samples.q, samples.tau, noise=noise)

@@ -16,7 +16,7 @@ from isotorque.cli.options import (
     Settle,
     TorqueNoise,
 )
-from isotorque.cli.output import emit_json, say
+from isotorque.cli.output import emit_json, plain, say
 from isotorque.cli.run_options import Confirm, LearnerName, NMin, Samples, Symmetries
 
 
@@ -47,6 +47,7 @@ def run(
     from isotorque.files import output_directory
     from isotorque.runs.experiment import run_experiment, save_run_model
     from isotorque.runs.judgement import judge_run
+    from isotorque.runs.recorded_relations import save_relations
     from isotorque.runs.run_options import ArmOptions, RunOptions, default_learner, default_samples
     from learning.exploration.by_name import DIRECTIONS
     from verify.report import write_report
@@ -64,6 +65,7 @@ def run(
         report = judge_run(outcome)
         progress("judging", 1, 1, "")
     save_run_model(outcome, out)
+    save_relations(outcome, out, plain)
     page, document = write_report(report, out)
     if json:
         emit_json(document)

@@ -16,6 +16,7 @@ from isotorque.runs.experiment import Progress
 from isotorque.runs.lattice_learning import fitted_with_curve
 from isotorque.runs.learned_model import LearnedModel
 from isotorque.runs.learning_curve import DenseTest
+from isotorque.runs.robot_copy import keep_robot_file
 from isotorque.runs.run_options import check_symmetries
 from isotorque.runs.stages import DATABASE
 from isotorque.single_thread import single_thread
@@ -109,6 +110,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     samples = read_csv(options.file, robot.joint_names)
     gravity = GravityModel(robot)
     _record(robot, samples, output_directory(out))
+    keep_robot_file(options.robot, out)
     name = options.learner or ("gaussian-process" if len(samples.q) <= MANY_ROWS else "network")
     task = options.task(samples)
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
+from isotorque.runs.robot_copy import keep_robot_file
 from isotorque.runs.run_options import LATTICE, RunOptions
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.single_thread import single_thread
@@ -120,6 +121,7 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
         Recording.open_or_create(out / DATABASE, info) as recording,
         _timed(clock, "discovery"),
     ):
+        keep_robot_file(options.robot, out)
         recorded = RecordedSimulation(arm, recording, phase="discovery")
         scheme = Scheme(
             recorded,

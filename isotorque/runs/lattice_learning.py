@@ -16,6 +16,7 @@ from isotorque.runs.experiment import (
 )
 from isotorque.runs.learned_model import LearnedModel, missing_symmetries
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
+from isotorque.runs.robot_copy import keep_robot_file
 from isotorque.runs.run_options import RunOptions
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.single_thread import single_thread
@@ -120,6 +121,7 @@ def _sampled(
     chosen = {k: getattr(options, k) for k in ("samples", "symmetries", "strategy")}
     info = run_info(robot, arm, options.arm, "learn", chosen)
     with Recording.open_or_create(out / DATABASE, info) as recording:
+        keep_robot_file(options.robot, out)
         recorded = RecordedSimulation(arm, recording, phase="learning")
         held = []
         for outcome in visit(recorded, lattice.q):

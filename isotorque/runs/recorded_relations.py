@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
+from isotorque.files import write_whole
+from isotorque.runs.experiment import RunOutcome
+from isotorque.runs.robot_copy import recorded_robot
+from isotorque.runs.stages import DATABASE
 from learning.recordings.recording_reader import RecordingReader, SettledSamples
 from learning.relations.candidate_maps import JudgedCandidate
 from learning.relations.executable import is_executable
 from learning.relations.learned_symmetries import LearnedSymmetries
-from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryRelation
 from symbolic.robots import load_robot
@@ -18,15 +23,13 @@ from symbolic.symmetries import primary_symmetries
 from verify.relation_files import load_relations, relations_document
 
 
-def claimed_relations(source: str, reader: RecordingReader) -> tuple[SymmetryRelation, ...]:
-    """Relations to test: those of a file, or those that a robot's geometry implies."""
+def claimed_relations(
+    source: str, run: Path, reader: RecordingReader
+) -> tuple[SymmetryRelation, ...]:
+    """Relations to test: those of a file, or those that the geometry of a robot implies."""
     if source.endswith(".json"):
         return load_relations(source, joint_names=reader.joint_names).relations
-    robot = load_robot(reader.robot if source == "exact" else source)
-    if source == "exact" and robot.digest != reader.digest:
-        found = f"{robot.name} (digest {robot.digest[:12]})"
-        accepted = f"the file of the robot recorded (digest {reader.digest[:12]})"
-        raise InputError("command line", "--candidates exact", found, accepted)
+    robot = recorded_robot(run, reader) if source == "exact" else load_robot(source)
     return tuple(primary_symmetries(GravityModel(robot).potential))
 
 
@@ -78,6 +81,32 @@ def relations_found(
             for r in [entry.relation]
         ],
     }
+
+
+def save_relations(run: RunOutcome, out: Path, plain: Callable[[Any], Any]) -> Path | None:
+    """Write the relations that a run exploited to ``out``; return the file, None without any.
+
+    Parameters
+    ----------
+    run
+        From `isotorque.runs.experiment.run_experiment`.
+    out
+        Its directory.
+    plain
+        Makes plain JSON of arrays.
+    """
+    names, learned = run.robot.joint_names, run.scheme.learned
+    if run.options.symmetries == "exact":
+        document = relations_document(run.group, names)
+    elif run.options.symmetries == "learned" and learned is not None:
+        with RecordingReader(out / DATABASE) as reader:
+            samples = reader.samples(phase="discovery")
+            document = relations_found(learned, samples, names, recorded_limits(reader))
+    else:
+        return None
+    path = out / "relations.json"
+    write_whole(path, json.dumps(plain(document), indent=1) + "\n")
+    return path
 
 
 def _regression(found: Any) -> dict[str, Any] | None:
