@@ -10,12 +10,12 @@ from symbolic.gravity import GravityModel
 from symbolic.robots import Robot
 from verify.checked_json import read_json
 from verify.claims import verify_relations_file
+from verify.largest_errors import default_tolerance, require_gravity
 from verify.models import verify_model
 from verify.relation_files import load_relations
 from verify.verdict import Verdict
 
 RELATION_TOLERANCE = 1e-9
-MODEL_TOLERANCE = 0.01
 
 
 def verify_path(
@@ -30,12 +30,14 @@ def verify_path(
     robot, gravity
         The truth.
     tolerance
-        Torque error allowed [N m]; None: 1e-9 for relations, 0.01 for the RMSE of models.
+        Torque error allowed [N m]; None: 1e-9 for relations, for models 1 % of each joint's
+        largest torque, at least 1e-3 of the arm's.
 
     Raises
     ------
     InputError
-        If there is nothing to judge, or a model of another robot.
+        If there is nothing to judge, a model of another robot, or a robot that gravity does not
+        load, beside which everything would pass.
     """
     if not path.is_dir():
         return _one(path, robot, gravity, tolerance)
@@ -48,6 +50,7 @@ def verify_path(
 def _one(
     path: Path, robot: Robot, gravity: GravityModel, tolerance: float | None
 ) -> tuple[Verdict, ...]:
+    require_gravity(gravity)
     document = read_json(path)
     if document.is_object and document.optional("kind") is not None:
         return _model(path, robot, gravity, tolerance)
@@ -61,5 +64,12 @@ def _model(
     saved = load_model(path, robot)
     if saved.joint_names != robot.joint_names:
         raise InputError(path, "joints", list(saved.joint_names), f"{list(robot.joint_names)}")
-    allowed = MODEL_TOLERANCE if tolerance is None else tolerance
-    return verify_model(saved.learner, gravity, limits=robot.limits, tolerance=allowed).verdicts
+    allowed = default_tolerance(gravity, robot.limits) if tolerance is None else tolerance
+    judged = verify_model(
+        saved.learner,
+        gravity,
+        limits=robot.limits,
+        tolerance=allowed,
+        largest_tolerance=allowed,
+    )
+    return judged.verdicts

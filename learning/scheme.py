@@ -49,8 +49,8 @@ class SchemeSettings:
     confirmations : int
         Target torques in a row that must leave the learned group as it is.
     max_targets : int
-        Target torques at most; without enough relations by then, learning goes on with what is
-        known.
+        Target torques at most; without enough relations by then the gate is not passed
+        (`Scheme.gate_passed`), and whoever runs the scheme decides whether to learn all the same.
     samples : int
         Torques commanded while learning.
     confirm : int
@@ -192,6 +192,13 @@ class Scheme:
         if self._given is not None:
             return self._given
         return None if self.learned is None else self.learned.group
+
+    @property
+    def gate_passed(self) -> bool:
+        """Whether enough relations are known to begin learning; also where none are asked for."""
+        if not self._use or self._given is not None:
+            return True
+        return bool(self.gates) and self.gates[-1].passed
 
     def _take(self, outcome: Outcome) -> None:
         self._seen.append(np.array(outcome.q))

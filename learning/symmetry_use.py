@@ -8,8 +8,9 @@ from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import BaseEstimator, RegressorMixin, clone
+from sklearn.base import BaseEstimator, clone
 
+from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
 from symbolic.relations import wrap
 
@@ -198,7 +199,7 @@ def averaged_isometry(A_sat: Array) -> Array:
     return np.ascontiguousarray(np.linalg.cholesky(metric).T)
 
 
-class SymmetricSamples(RegressorMixin, BaseEstimator):
+class SymmetricSamples(TorqueRegressor, BaseEstimator):
     """Any scikit-learn regressor, fed with all symmetric copies of every sample.
 
     Parameters

@@ -34,7 +34,7 @@ def verify_relations_file(
     -------
     tuple of Verdict
         One per relation; then, where the file says so, one each on the relations it calls exact,
-        on the bounds it gives, and on its list being the complete group.
+        on the bounds it gives, on its list being a group, and on its being complete.
 
     Raises
     ------
@@ -43,9 +43,10 @@ def verify_relations_file(
 
     Notes
     -----
-    A claimed bound is refuted only by a configuration that exceeds it. Where every relation is
-    proved, an ``order`` is the claim that no relation is missing, judged against the exact group;
-    otherwise (approximate or learned relations) it is the claim that they form a group.
+    A claimed bound is refuted only by a configuration that exceeds it. An ``order`` is the claim
+    that the relations form a group. That none is missing is a claim of its own, made by
+    ``complete`` and judged against the exact group: a list that lacks some is not wrong in that,
+    and where it claims no more it is told how many there are.
     """
     if file.n != gravity.n:
         raise InputError(file.source, "number of joints", file.n, f"{gravity.n}, as the robot has")
@@ -58,9 +59,14 @@ def verify_relations_file(
         verdicts.append(_exactness(file, gravity))
     if any(np.isfinite(relation.bound).any() for relation in file):
         verdicts.append(_bounds(file, gravity))
-    if file.order is not None:
-        exact = all(verdict.status is Status.PROVED for verdict in verdicts[: len(file)])
-        verdicts.append(_completeness(file, gravity) if exact else _closure(file))
+    exact = all(verdict.status is Status.PROVED for verdict in verdicts[: len(file)])
+    if file.complete:
+        verdicts.append(_completeness(file, gravity))
+    elif file.order is not None and exact:
+        whole = _completeness(file, gravity)
+        verdicts.append(whole if whole.passed else _closure(file, _there_are(gravity)))
+    elif file.order is not None:
+        verdicts.append(_closure(file))
     return tuple(verdicts)
 
 
@@ -92,6 +98,11 @@ def _bounds(file: RelationsFile, gravity: GravityModel) -> Verdict:
     return Verdict(claim, status, worst)
 
 
+def _there_are(gravity: GravityModel) -> int:
+    """Number of exact relations that there are."""
+    return primary_symmetries(gravity.potential).order
+
+
 def _completeness(file: RelationsFile, gravity: GravityModel) -> Verdict:
     group = primary_symmetries(gravity.potential)
     free = ~np.any(gravity.potential.frequencies != 0, axis=0)
@@ -102,13 +113,14 @@ def _completeness(file: RelationsFile, gravity: GravityModel) -> Verdict:
     distinct = len({group.index(r) for r in listed if r in group})
     claim = f"the {len(file)} relations listed are all that there are ({group.order})"
     whole = found == len(file) and distinct == len(file) == group.order
-    return Verdict(claim, Status.PROVED if whole else Status.REFUTED, 0.0)
+    return Verdict(claim, Status.PROVED if whole else Status.REFUTED, np.nan)
 
 
-def _closure(file: RelationsFile) -> Verdict:
-    claim = f"the {len(file)} relations listed form a group"
+def _closure(file: RelationsFile, there_are: int | None = None) -> Verdict:
+    known = "" if there_are is None else f" (of the {there_are} that there are)"
+    claim = f"the {len(file)} relations listed{known} form a group"
     try:
         closed = SymmetryGroup(file.relations).is_closed
     except InputError:  # a matrix that does not map y = B q to itself
         closed = False
-    return Verdict(claim, Status.TESTED if closed else Status.REFUTED, 0.0)
+    return Verdict(claim, Status.TESTED if closed else Status.REFUTED, np.nan)

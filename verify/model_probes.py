@@ -14,25 +14,23 @@ Array = NDArray[np.float64]
 
 
 def equivariance_error(
-    predict: Callable[[Array], Array], group: SymmetryGroup, q: Array, active: Array
+    predict: Callable[[Array], Array], group: SymmetryGroup, q: Array
 ) -> tuple[float, Array]:
-    """Largest |predict(A q + d) - Y predict(q)| over active joints [N m], and where it is."""
+    """Largest |predict(A q + d) - Y predict(q)| of any joint [N m], and where it is."""
     here = predict(q)
     worst, at = 0.0, q[0]
     for relation in group:
-        error = np.abs(predict(relation.configuration(q)) - relation.torque(here))[:, active]
+        error = np.abs(predict(relation.configuration(q)) - relation.torque(here))
         size = error.max(axis=1, initial=0.0)
         if size.max() > worst:
             worst, at = float(size.max()), q[int(np.argmax(size))]
     return worst, at
 
 
-def periodicity_error(
-    predict: Callable[[Array], Array], q: Array, active: Array
-) -> tuple[float, Array]:
+def periodicity_error(predict: Callable[[Array], Array], q: Array) -> tuple[float, Array]:
     """Largest change of a prediction by turns of -1, 0 or 1 per joint [N m], and where it is."""
     turns = np.random.default_rng(0).integers(-1, 2, q.shape)
-    change = np.abs(predict(q + 2 * np.pi * turns) - predict(q))[:, active]
+    change = np.abs(predict(q + 2 * np.pi * turns) - predict(q))
     size = change.max(axis=1, initial=0.0)
     return float(size.max()), q[int(np.argmax(size))]
 

@@ -35,13 +35,16 @@ class RelationsFile:
     joint_names : tuple of str or None
         The file's ``joints``.
     order : int or None
-        The claimed order of the complete group; always the number of relations.
+        The claimed order of the group they form; always the number of relations.
+    complete : bool
+        Whether the file claims that no exact relation is missing.
     """
 
     source: str
     relations: tuple[SymmetryRelation, ...]
     joint_names: tuple[str, ...] | None = None
     order: int | None = None
+    complete: bool = False
 
     def __iter__(self) -> Iterator[SymmetryRelation]:
         return iter(self.relations)
@@ -74,9 +77,10 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     ------
     InputError
         For a file that cannot be read or is not JSON, for wrong types, lengths, signs, numbers
-        that are not finite, and for optional entries (``joints``, ``order``, ``rank``, ``basis``,
-        ``free_directions``; ``M``, ``N``, ``rhs``, ``exact``, ``bound``) that are malformed or
-        contradict ``A`` and ``d``. The message names the file, the field and the value.
+        that are not finite, and for optional entries (``joints``, ``order``, ``complete``,
+        ``rank``, ``basis``, ``free_directions``; ``M``, ``N``, ``rhs``, ``exact``, ``bound``) that
+        are malformed or contradict ``A`` and ``d``. The message names the file, the field and the
+        value.
 
     Notes
     -----
@@ -104,12 +108,13 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     B = None if basis is None else _basis(basis, n)
     relations = tuple(_relation(entry, n, B) for entry in entries)
     _check_group_entries(root, relations, B, n)
-    order = root.optional("order")
+    order, complete = root.optional("order"), root.optional("complete")
     return RelationsFile(
         source=document.where,
         relations=relations,
         joint_names=names,
         order=None if order is None else len(relations),
+        complete=complete is not None and complete.boolean(),
     )
 
 
@@ -124,7 +129,7 @@ def relations_document(
     Parameters
     ----------
     relations
-        A complete group (then ``order`` and ``free_directions`` are written too) or a list.
+        A group (then ``order`` and ``free_directions`` are written too) or a list.
     joint_names
         Joint names in the order of q.
     extra

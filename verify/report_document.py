@@ -31,9 +31,10 @@ def report_document(report: RunReport) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``format``, ``passed``, ``verdicts`` (as ``verify --json`` has them), ``totals``, and one
-        entry per part, named and nested as the fields of `RunReport`. Numbers that are not finite
-        are null. Configurations reached by symmetry alone are counted, not listed.
+        ``format``, ``passed``, ``summary`` (what holds and what does not), ``verdicts`` (as
+        ``verify --json`` has them), ``totals``, and one entry per part, named and nested as the
+        fields of `RunReport`. Numbers that are not finite are null. Configurations reached by
+        symmetry alone are counted, not listed.
 
     Examples
     --------
@@ -45,6 +46,7 @@ def report_document(report: RunReport) -> dict[str, Any]:
     document = {
         "format": FORMAT,
         "passed": report.passed,
+        "summary": list(report.summary),
         "verdicts": [verdict.to_json() for verdict in report.all_verdicts],
         "totals": totals(report),
     }
@@ -102,7 +104,12 @@ def _special(value: Any) -> Any:
         return document
     if isinstance(value, SymmetryReport):
         entries = {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
-        return {"found": value.found, "false": value.false, **entries}
+        return {
+            "found": value.found,
+            "false": value.false,
+            "complete": value.complete,
+            **entries,
+        }
     if isinstance(value, ExplorationReport):
         names = [f.name for f in dataclasses.fields(value) if f.name != "images"]
         entries = {name: plain(getattr(value, name)) for name in names}

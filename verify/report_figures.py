@@ -91,29 +91,38 @@ def _numbers(found: LevelSetReport) -> list[str]:
     return labels
 
 
+def _loaded(report: RunReport) -> tuple[list[int], str]:
+    """Numbers of the joints that pictures show, and the words on those left out."""
+    setup = report.setup
+    joints = [i for i, name in enumerate(setup.joint_names) if name not in setup.unloaded]
+    names = ", ".join(setup.unloaded)
+    return joints, f" Left out, as gravity does not load it: {names}." if names else ""
+
+
 def _discovery(report: RunReport) -> Iterator[Picture]:
+    joints, left_out = _loaded(report)
     if report.discovery is not None and report.discovery.traces:
         traces = report.discovery.traces
         words = f"{len(traces)} torque profiles that start and end at the same torque up to signs"
-        figure = torque_profiles(traces)
-        yield Picture("fig3-torque-profiles", "discovery", f"{words} (Fig. 3).", figure)
+        figure = torque_profiles(traces, joints=joints)
+        yield Picture("fig3-torque-profiles", "discovery", f"{words} (Fig. 3).{left_out}", figure)
         caption = (
             "The motion they led to (Fig. 4). Dots: where the arm settled under the last torque; "
             "red crosses: a joint limit was met or it did not settle, and went home."
         )
-        figure = joint_trajectories(traces)
-        yield Picture("fig4-joint-trajectories", "discovery", caption, figure)
+        figure = joint_trajectories(traces, joints=joints)
+        yield Picture("fig4-joint-trajectories", "discovery", caption + left_out, figure)
     torques = report.static_torques
-    if torques is not None and len(torques.admissible) and torques.admissible.shape[1] > 1:
+    if torques is not None and len(torques.admissible) and len(joints) > 1:
         shaded = torques.triangles is not None
         caption = "Set of static torques as the arm found it (SST, Fig. 7)." + (
             " Shaded: the region that exploration is kept in." if shaded else ""
         )
         figure = static_torque_map(
-            torques.admissible, torques.inadmissible, triangles=torques.triangles
+            torques.admissible, torques.inadmissible, triangles=torques.triangles, joints=joints
         )
-        wide = torques.admissible.shape[1] > 2
-        yield Picture("fig7-static-torques", "discovery", caption, figure, wide=wide)
+        wide = len(joints) > 2
+        yield Picture("fig7-static-torques", "discovery", caption + left_out, figure, wide=wide)
     domain = report.domain
     if domain is not None and domain.polygon is not None:
         caption = (
@@ -125,12 +134,13 @@ def _discovery(report: RunReport) -> Iterator[Picture]:
 
 def _learning(report: RunReport) -> Iterator[Picture]:
     explored = report.exploration
-    if explored is not None and len(explored.explored) and explored.explored.shape[1] > 1:
+    joints, left_out = _loaded(report)
+    if explored is not None and len(explored.explored) and len(joints) > 1:
         polygon = None if report.domain is None else report.domain.polygon
         caption = "Explored configurations, and those learned from them by symmetry (Fig. 10)."
-        figure = explored_map(explored.explored, explored.images, domain=polygon)
-        wide = explored.explored.shape[1] > 2
-        yield Picture("fig10-explored", "learning", caption, figure, wide=wide)
+        figure = explored_map(explored.explored, explored.images, domain=polygon, joints=joints)
+        wide = len(joints) > 2
+        yield Picture("fig10-explored", "learning", caption + left_out, figure, wide=wide)
     if report.curves:
         caption = "Torque error against the number of samples learned from (Fig. 13)."
         figure = learning_curves(report.curves, goal=report.goal)

@@ -121,6 +121,11 @@ class SymmetryReport:
         """Number of learned relations that stand for no true one."""
         return sum(entry.place is None for entry in self.relations)
 
+    @property
+    def complete(self) -> bool:
+        """Whether every true relation is among the learned ones."""
+        return self.found == self.truth.order
+
 
 @dataclass(frozen=True)
 class Gate:
@@ -147,9 +152,13 @@ class DiscoveryReport:
     settled, limit_hits, timeouts : int
         How these motions ended.
     n_min : int
-        Relations needed before learning began.
+        Relations needed before learning begins.
     gates : tuple of Gate
         What was known after each target torque.
+    learned_anyway : bool
+        Whether learning was to begin even if the last gate was not passed.
+    needs_gate : bool
+        Whether learning uses the relations discovered, and so waits for them.
     traces : tuple of ProfileTrace
         Profiles played for one target torque (Fig. 3 and 4).
     """
@@ -164,6 +173,13 @@ class DiscoveryReport:
     n_min: int
     gates: tuple[Gate, ...] = ()
     traces: tuple[ProfileTrace, ...] = ()
+    learned_anyway: bool = False
+    needs_gate: bool = True
+
+    @property
+    def gate_passed(self) -> bool:
+        """Whether enough relations were known in the end, where they are needed."""
+        return not self.needs_gate or bool(self.gates and self.gates[-1].passed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,7 +254,9 @@ class ExplorationReport:
     projected : int
         Commands moved to the nearest static torque.
     explored_share : float or None
-        Share of the domain explored.
+        Share of the domain within ``explored_radius`` of what was learned from, or of its copies.
+    explored_radius : float or None
+        In the metric of ``SymmetryCoordinates`` [rad].
     """
 
     explored: Array
@@ -249,3 +267,4 @@ class ExplorationReport:
     timeouts: int
     projected: int = 0
     explored_share: float | None = None
+    explored_radius: float | None = None

@@ -15,6 +15,7 @@ from verify.run_parts import (
     SymmetryReport,
 )
 from verify.verdict import Verdict, all_passed
+from verify.what_holds import what_holds
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,8 @@ class RunSetup:
         The command line that makes this run again; may be empty.
     created : str
         Date and time of the run; may be empty.
+    unloaded : tuple of str
+        Joints that gravity does not load; pictures leave them out.
     """
 
     robot: str
@@ -53,6 +56,7 @@ class RunSetup:
     versions: tuple[tuple[str, str], ...] = ()
     command: str = ""
     created: str = ""
+    unloaded: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -118,6 +122,11 @@ class RunReport:
         relations = () if self.symmetry is None else self.symmetry.relations
         model = () if self.model is None else self.model.verdicts
         return (*(entry.verdict for entry in relations), *model, *self.verdicts)
+
+    @property
+    def summary(self) -> tuple[str, ...]:
+        """What holds and what does not, part by part."""
+        return what_holds(self)
 
     @property
     def passed(self) -> bool:

@@ -39,7 +39,12 @@ TRACES = 5
 
 
 def summarise_discovery(
-    motions: Sequence[Discovery], gates: Sequence[GateDecision], n_min: int
+    motions: Sequence[Discovery],
+    gates: Sequence[GateDecision],
+    n_min: int,
+    *,
+    learned_anyway: bool = False,
+    needs_gate: bool = True,
 ) -> DiscoveryReport:
     """Summarise symmetry discovery.
 
@@ -51,6 +56,8 @@ def summarise_discovery(
         ``Scheme.gates``.
     n_min
         Relations that were needed.
+    learned_anyway, needs_gate
+        As in `DiscoveryReport`.
     """
     profiles = [motion for motion in motions if motion.playback is not None]
     ends = Counter(motion.outcome.kind for motion in motions)
@@ -75,6 +82,8 @@ def summarise_discovery(
         n_min=n_min,
         gates=tuple(Gate(g.targets, g.order, g.passed, g.missing or "") for g in gates),
         traces=_traces(profiles),
+        learned_anyway=learned_anyway,
+        needs_gate=needs_gate,
     )
 
 
@@ -129,7 +138,7 @@ def summarise_domain(domain: FundamentalDomain) -> DomainReport:
 
 
 def summarise_exploration(
-    steps: Sequence[ExplorationStep], group: SymmetryGroup | None
+    steps: Sequence[ExplorationStep], group: SymmetryGroup | None, radius: float | None = None
 ) -> ExplorationReport:
     """Summarise an exploration.
 
@@ -139,6 +148,8 @@ def summarise_exploration(
         Every step taken.
     group
         The symmetries that were exploited, None for none.
+    radius
+        Within which a configuration counts as explored [rad].
     """
     ends = Counter(step.outcome.kind for step in steps)
     n = len(steps[0].torque) if steps else 0
@@ -157,6 +168,7 @@ def summarise_exploration(
         timeouts=ends[OutcomeKind.TIMEOUT],
         projected=sum(step.projected for step in steps),
         explored_share=shares[-1] if shares else None,
+        explored_radius=radius if shares else None,
     )
 
 

@@ -36,10 +36,13 @@ class Verdict:
         Whether the claim stands within the tolerance.
     worst_error : float
         For ``proved`` and ``bounded`` the bound, otherwise the largest error found; in the unit
-        of the claim, N m unless it says otherwise.
+        of the claim, N m unless it says otherwise. NaN, and null in JSON, where the claim is
+        about no error, such as that a list is complete.
     counterexample : (n,) array or None
         For ``refuted``: the simplest configuration found where the claim fails [rad]; None where
         the claim is not about single configurations.
+    rmse : float or None
+        Root mean square error, where the claim is about one.
 
     Examples
     --------
@@ -54,6 +57,7 @@ class Verdict:
     status: Status
     worst_error: float
     counterexample: NDArray[np.float64] | None = None
+    rmse: float | None = None
 
     @property
     def passed(self) -> bool:
@@ -61,24 +65,44 @@ class Verdict:
         return self.status is not Status.REFUTED
 
     def to_json(self) -> dict[str, Any]:
-        """Return the verdict as the command line prints it."""
+        """Return the verdict as the command line prints it; with ``rmse`` where it has one."""
+        rmse = {} if self.rmse is None else {"rmse": float(self.rmse)}
         return {
             "claim": self.claim,
             "status": str(self.status),
             "passed": self.passed,
-            "worst_error": float(self.worst_error),
+            "worst_error": None if np.isnan(self.worst_error) else float(self.worst_error),
             "counterexample": None
             if self.counterexample is None
             else [float(x) for x in self.counterexample],
+            **rmse,
         }
 
     def __str__(self) -> str:
-        where = ""
+        said = []
+        if self.rmse is not None:
+            said = [f"RMSE {self.rmse:.3g}", f"largest error {self.worst_error:.3g}"]
+        elif not np.isnan(self.worst_error):
+            said = [f"worst error {self.worst_error:.3g}"]
         if self.counterexample is not None:
-            where = ", at q = (" + ", ".join(f"{x:.6g}" for x in self.counterexample) + ")"
-        return f"{self.status}: {self.claim} (worst error {self.worst_error:.3g}{where})"
+            said += ["at q = (" + ", ".join(f"{x:.6g}" for x in self.counterexample) + ")"]
+        figures = f" ({', '.join(said)})" if said else ""
+        return f"{self.status}: {self.claim}{figures}"
 
 
 def all_passed(verdicts: Iterable[Verdict]) -> bool:
     """Return whether every claim stands (also when there is none)."""
     return all(verdict.passed for verdict in verdicts)
+
+
+def sizes(values: NDArray[np.float64]) -> str:
+    """Write tolerances of joints: one number where they are equal.
+
+    Examples
+    --------
+    >>> sizes(np.array([0.1, 0.1])), sizes(np.array([0.245312, 0.0613]))
+    ('0.1', '(0.245, 0.0613)')
+    """
+    if np.all(values == values[0]):
+        return f"{values[0]:g}"
+    return "(" + ", ".join(f"{x:.3g}" for x in values) + ")"

@@ -22,9 +22,18 @@ from isotorque.cli.options import (
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, row, say
-from isotorque.cli.run_options import LearnerName, NMin, Samples, Symmetries
+from isotorque.cli.run_options import LearnAnyway, LearnerName, NMin, Samples, Symmetries
 
-SIMULATED = ("n_min", "physics", "engine", "settle", "angle_noise", "torque_noise", "encoder_step")
+SIMULATED = (
+    "n_min",
+    "learn_anyway",
+    "physics",
+    "engine",
+    "settle",
+    "angle_noise",
+    "torque_noise",
+    "encoder_step",
+)
 
 
 def learn(
@@ -59,6 +68,7 @@ def learn(
         ),
     ] = False,
     n_min: NMin = 2,
+    learn_anyway: LearnAnyway = False,
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
     settle: Settle = "finished",
@@ -69,10 +79,11 @@ def learn(
     encoder_step: EncoderStep = 0.0,
     json: Json = False,
     quiet: Quiet = False,
-) -> None:
+) -> int:
     """Learn the inverse statics model of ROBOT; goes on from a discovery in OUT, or makes one.
 
-    A lattice is visited with guided physics; what is not given is as in the discovery.
+    A lattice is visited with guided physics; what is not given is as in the discovery. Exit
+    status 1, with nothing learned, where fewer relations than --n-min are known.
     """
     from isotorque.cli.progress import progress_bars
     from isotorque.files import output_directory
@@ -105,7 +116,9 @@ def learn(
         emit_json(document)
     else:
         _print(document)
-        say(f"written: {document['model']}", quiet)
+        if document["model"] is not None:
+            say(f"written: {document['model']}", quiet)
+    return 0 if document["model"] is not None else 1
 
 
 def _given(context: typer.Context) -> dict[str, Any]:
@@ -132,8 +145,13 @@ def _refuse(given: dict[str, Any], names: tuple[str, ...], beside: str) -> None:
 
 
 def _print(document: dict[str, Any]) -> None:
+    if document["model"] is None:
+        for remark in document["remarks"]:
+            print(remark)
+        return
     print(f"torque RMSE {document['rmse_torque']:.4g} N m on the {document['test']},", end=" ")
-    print(f"by joint {row(document['rmse_by_joint'], 4)}")
+    print(f"by joint {row(document['rmse_by_joint'], 4)};", end=" ")
+    print(f"largest error found {row(document['largest_error_by_joint'], 4)} N m")
     print(f"{document['samples']} samples, {document['relations']} symmetry relations,", end=" ")
     print(f"{document['discovery_motions']} motions to discover them")
     for remark in document["remarks"]:

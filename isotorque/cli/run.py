@@ -17,7 +17,15 @@ from isotorque.cli.options import (
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, plain, say
-from isotorque.cli.run_options import Confirm, LearnerName, NMin, Samples, Symmetries
+from isotorque.cli.run_options import (
+    Confirm,
+    LearnAnyway,
+    LearnerName,
+    ModelTolerance,
+    NMin,
+    Samples,
+    Symmetries,
+)
 
 
 def run(
@@ -28,6 +36,8 @@ def run(
     symmetries: Symmetries = "learned",
     n_min: NMin = 2,
     confirm: Confirm = 0,
+    learn_anyway: LearnAnyway = False,
+    tolerance: ModelTolerance = None,
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
     settle: Settle = "finished",
@@ -41,7 +51,10 @@ def run(
 ) -> int:
     """Discover symmetries, explore, learn, and judge it all; ends with OUT/report.html.
 
-    The same command resumes a run that was stopped.
+    Passed is a run whose relations are none of them false, whose gate before learning is passed,
+    and whose model is right within --tolerance on the whole space; where orbits without a stable
+    member exist, those with one are judged too, on their own. The same command resumes a run that
+    was stopped.
     """
     from isotorque.cli.progress import progress_bars
     from isotorque.files import output_directory
@@ -57,17 +70,30 @@ def run(
     )
     learner = default_learner(DIRECTIONS) if learner is None else learner
     samples = default_samples(DIRECTIONS, learner) if samples is None else samples
-    options = RunOptions(robot, arm, n_min, samples, learner, symmetries, confirm=confirm)
+    options = RunOptions(
+        robot,
+        arm,
+        n_min,
+        samples,
+        learner,
+        symmetries,
+        confirm=confirm,
+        learn_anyway=learn_anyway,
+        tolerance=tolerance,
+    )
     output_directory(out)
     with progress_bars(quiet) as progress:
         outcome = run_experiment(options, out, progress)
         progress("judging", 0, 1, "")
         report = judge_run(outcome)
         progress("judging", 1, 1, "")
-    save_run_model(outcome, out)
+    if outcome.scheme.learner is not None:
+        save_run_model(outcome, out)
     save_relations(outcome, out, plain)
     page, document = write_report(report, out)
     if json:
         emit_json(document)
+    else:
+        print(f"{'passed' if report.passed else 'failed'}: {'; '.join(report.summary)}")
     say(f"report: {page}", quiet)
     return 0 if report.passed else 1

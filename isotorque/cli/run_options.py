@@ -41,3 +41,17 @@ Confirm = Annotated[
         help="Torques at the end of the discovery, chosen to say most about the relations.",
     ),
 ]
+LearnAnyway = Annotated[
+    bool,
+    typer.Option("--learn-anyway", help="Learn although fewer relations than --n-min are known."),
+]
+ModelTolerance = Annotated[
+    float | None,
+    typer.Option(
+        "--tolerance",
+        metavar="NM",
+        help="Torque error allowed at each joint, RMSE and largest [N m]; by default 1 % of the"
+        " joint's largest torque, at least 1e-3 of the arm's.",
+        show_default=False,
+    ),
+]

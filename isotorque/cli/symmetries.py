@@ -44,6 +44,7 @@ def symmetries(
     document = relations_document(group, gravity.joint_names) | {
         "robot": loaded.name,
         "tolerance": tolerance,
+        **({"complete": True} if tolerance == 0 else {}),
         "snapped": snapped,
         "snap_bound": loaded.snap_bound,
         "free_joints": gravity.free_joints,

@@ -28,7 +28,8 @@ def verify(
         typer.Option(
             "--tolerance",
             metavar="NM",
-            help="Torque error allowed [N m]: of each relation (1e-9), of a model's RMSE (0.01).",
+            help="Torque error allowed [N m]: of each relation (1e-9); of a model, RMSE "
+            "and largest at each joint (1 % of its largest torque, at least 1e-3 of the arm's).",
             show_default=False,
         ),
     ] = None,

@@ -77,6 +77,16 @@ class RunOutcome:
     curve: list[CurvePoint] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
 
+    @property
+    def gate_passed(self) -> bool:
+        """Whether the discovery told enough to begin learning (n_sym >= n_min)."""
+        return self.scheme.gate_passed
+
+    @property
+    def stops_before_learning(self) -> bool:
+        """Whether nothing is learned, because too little is known of the symmetries."""
+        return not (self.gate_passed or self.options.learn_anyway)
+
     def ends(self) -> dict[OutcomeKind, int]:
         """How the motions of the discovery ended."""
         kinds = [motion.outcome.kind for motion in self.motions]
@@ -147,7 +157,8 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     Parameters
     ----------
     result
-        From `discover_symmetries`; model, steps and curve are added to it.
+        From `discover_symmetries`; model, steps and curve are added to it, unless it
+        `stops_before_learning`.
     out
         The same directory.
     progress
@@ -163,10 +174,14 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
         what = f"number of torques held by itself, in {len(result.motions)} motions,"
         accepted = "some; --strategy lattice leads an arm that holds none"
         raise InputError(result.robot.name, what, 0, accepted)
+    if result.stops_before_learning:
+        return
     arm = simulated_arm(result.robot, options.arm, 1)
-    chosen = {k: getattr(options, k) for k in ("samples", "symmetries", "strategy")}
+    chosen: dict[str, Any] = {k: getattr(options, k) for k in ("samples", "symmetries", "strategy")}
     # a batch learner does not change what the arm does: another one may use the same samples
     chosen["learner"] = options.leader
+    if not result.gate_passed:  # as asked for; where it is passed the option changes nothing
+        chosen["learn_anyway"] = True
     info = run_info(result.robot, arm, options.arm, "learn", chosen)
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
@@ -194,6 +209,8 @@ def save_run_model(result: RunOutcome, out: Path) -> Path:
     """Write the learned model to ``out``; return the path of its JSON."""
     options = result.options
     notes = {k: getattr(options, k) for k in ("learner", "symmetries", "strategy", "samples")}
+    if not result.gate_passed:
+        notes["learn_anyway"] = True
     return save_learner(result.scheme.learner, result.robot, notes, out)
 
 
@@ -235,9 +252,10 @@ def _follow(result: RunOutcome, progress: Progress) -> None:
         count, note = len(result.steps), ""
         if count in counts:
             learner: Any = result.scheme.learner
-            rmse = test.rmse(learner.fitted() if hasattr(learner, "fitted") else learner)
-            result.curve.append(CurvePoint(count, rmse, step.explored))
-            note = f"RMSE {rmse:.4g} N m"
+            model = learner.fitted() if hasattr(learner, "fitted") else learner
+            point = test.point(count, model, step.explored)
+            result.curve.append(point)
+            note = f"RMSE {point.rmse:.4g} N m, largest error {point.largest:.4g} N m"
         progress(LEARNING, count, total, note)
 
 

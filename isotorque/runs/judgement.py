@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from dataclasses import replace
 
@@ -18,7 +19,8 @@ from symbolic.level_curves import level_curves
 from symbolic.level_sets import level_set
 from verify.figures.learning_curves import LearningCurve
 from verify.figures.planar_links import planar_links
-from verify.learned_symmetries import completeness, judge_relations, judge_symmetries
+from verify.largest_errors import default_tolerance
+from verify.learned_symmetries import judge_relations, judge_symmetries, soundness
 from verify.models import ModelJudgement, TargetResult, verify_model
 from verify.paper_targets import paper_targets
 from verify.run_parts import StaticTorqueReport
@@ -31,7 +33,7 @@ from verify.run_summary import (
 )
 from verify.static_torques import MOST_JOINTS, judge_static_torques
 from verify.targets import TargetSet
-from verify.verdict import Verdict
+from verify.verdict import Status, Verdict
 
 Array = NDArray[np.float64]
 
@@ -58,17 +60,32 @@ def judge_run(run: RunOutcome) -> RunReport:
     RunReport
     """
     symmetry = _symmetry(run)
+    learned = run.options.symmetries == "learned"
+    discovery = summarise_discovery(
+        run.motions,
+        run.scheme.gates,
+        run.options.n_min,
+        learned_anyway=run.options.learn_anyway,
+        needs_gate=learned,
+    )
     verdicts: tuple[Verdict, ...] = ()
-    if symmetry is not None and run.options.symmetries == "learned":
-        verdicts = (completeness(symmetry),)
+    if symmetry is not None and learned:
+        verdicts = (soundness(symmetry),)
+    if run.stops_before_learning:
+        claim = f"at least {run.options.n_min} relations are known and confirmed before learning"
+        verdicts += (Verdict(claim, Status.REFUTED, math.nan),)
     return RunReport(
         setup=_setup(run),
         stages=_stages(run),
         symmetry=symmetry,
-        discovery=summarise_discovery(run.motions, run.scheme.gates, run.options.n_min),
+        discovery=discovery,
         static_torques=_static_torques(run),
         domain=None if run.scheme.domain is None else summarise_domain(run.scheme.domain),
-        exploration=summarise_exploration(run.steps, run.scheme.group),
+        exploration=None
+        if not run.steps
+        else summarise_exploration(
+            run.steps, run.scheme.group, run.scheme.settings.exploration.step_width
+        ),
         curves=_curves(run),
         goal=PAPER_RMSE if run.robot.name == "2r" else None,
         model=_model(run),
@@ -91,6 +108,8 @@ def _setup(run: RunOutcome) -> RunSetup:
         ("--encoder-step", options.arm.encoder_step),
     ):
         command += [option, str(value)] if value else []
+    command += ["--learn-anyway"] if options.learn_anyway else []
+    command += [] if options.tolerance is None else ["--tolerance", str(options.tolerance)]
     return RunSetup(
         robot=run.robot.name,
         digest=run.robot.digest,
@@ -103,12 +122,13 @@ def _setup(run: RunOutcome) -> RunSetup:
         seed=options.arm.seed,
         versions=tuple(sorted(software_versions().items())),
         command=shlex.join(command),
+        unloaded=run.gravity.free_joints,
     )
 
 
 def _stages(run: RunOutcome) -> tuple[Stage, ...]:
     motions, steps = run.motions, run.steps
-    return (
+    stages = (
         Stage("derive gravity and its symmetries", run.seconds["derivation"]),
         Stage(
             "discover symmetries",
@@ -116,13 +136,16 @@ def _stages(run: RunOutcome) -> tuple[Stage, ...]:
             len(motions),
             sum(m.outcome.seconds for m in motions),
         ),
-        Stage(
-            "learn the inverse statics model",
-            run.seconds["learning"],
-            len(steps),
-            sum(s.outcome.seconds for s in steps),
-        ),
     )
+    if run.stops_before_learning:
+        return stages
+    learning = Stage(
+        "learn the inverse statics model",
+        run.seconds["learning"],
+        len(steps),
+        sum(s.outcome.seconds for s in steps),
+    )
+    return (*stages, learning)
 
 
 def _symmetry(run: RunOutcome) -> SymmetryReport | None:
@@ -188,6 +211,8 @@ def _model(run: RunOutcome) -> ModelJudgement | None:
             for t in targets
         ]
     # most learners only come near equivariance: that is measured, but nobody claims it
+    allowed = run.options.tolerance
+    tolerance = default_tolerance(run.gravity, run.robot.limits) if allowed is None else allowed
     claimed = run.options.learner in EQUIVARIANT_LEARNERS and run.scheme.group is not None
     judgement = verify_model(
         run.scheme.learner,
@@ -196,6 +221,8 @@ def _model(run: RunOutcome) -> ModelJudgement | None:
         group=run.scheme.group,
         orbits=run.group,
         targets=targets,
+        tolerance=tolerance,
+        largest_tolerance=tolerance,
         equivariance_tolerance=EQUIVARIANCE if claimed else None,
     )
     named = {t.name: t for t in targets}

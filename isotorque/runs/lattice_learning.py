@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,13 @@ from isotorque.runs.experiment import (
     RunOutcome,
     discover_symmetries,
 )
-from isotorque.runs.learned_model import LearnedModel, missing_symmetries
+from isotorque.runs.learned_model import (
+    LearnedModel,
+    choices,
+    gate_remarks,
+    missing_symmetries,
+    model_of_run,
+)
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
 from isotorque.runs.robot_copy import keep_robot_file
 from isotorque.runs.run_options import RunOptions
@@ -50,6 +57,7 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
     Returns
     -------
     LearnedModel
+        Without a learner where discovery and lattice told too little of the symmetries.
 
     Raises
     ------
@@ -57,6 +65,7 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
         For a robot or options that cannot be used, and for a directory that holds another run.
     """
     remarks: tuple[str, ...] = ()
+    enough = True
     found: RunOutcome | None = None
     if options.symmetries == "learned":
         found = discover_symmetries(options, out, progress)
@@ -74,8 +83,12 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
     if len(lattice.q) != options.samples:
         remarks += (f"{options.samples} samples asked for, a lattice of {len(lattice.q)} taken",)
     if found is not None:
-        group, more = _with_more_samples(found, q, torque)
+        group, more, enough = _with_more_samples(found, q, torque)
         remarks += more
+        if not enough:
+            remarks += gate_remarks(found)
+            if not options.learn_anyway:
+                return replace(model_of_run(found), remarks=remarks)
     learner, curve = fitted_with_curve(
         options.learner, options.task(robot.n), group, q, torque, DenseTest(robot, gravity)
     )
@@ -83,7 +96,7 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
         robot,
         gravity,
         learner,
-        {k: getattr(options, k) for k in ("strategy", "learner", "symmetries")},
+        choices(options, enough),
         len(q),
         0 if found is None else len(found.motions),
         1 if group is None else group.order,
@@ -95,20 +108,23 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
 
 def _with_more_samples(
     found: RunOutcome, q: Array, torque: Array
-) -> tuple[SymmetryGroup | None, tuple[str, ...]]:
+) -> tuple[SymmetryGroup | None, tuple[str, ...], bool]:
     """Relations that the lattice shows beside what the discovery showed, and a word on them.
 
-    A lattice was led to places that the arm cannot hold by itself, so it may know better.
+    A lattice was led to places that the arm cannot hold by itself, so it may know better; the last
+    value says whether enough relations are known to learn, by either.
     """
     group = found.scheme.group
     known = 1 if group is None else group.order
     held, torques = found.scheme.samples
     learned = learn_relations(np.concatenate([held, q]), np.concatenate([torques, torque]))
+    enough = learned.missing is None and learned.order >= found.options.n_min
+    enough = enough or found.gate_passed
     free = learned.group.rank < learned.group.n
     if learned.order > known or (learned.order == known and (known > 1 or free)):
         words = f"symmetries: {learned.order} known with the samples of the lattice"
-        return learned.group, (words,) if learned.order > known else ()
-    return group, ()
+        return learned.group, (words,) if learned.order > known else (), enough
+    return group, (), enough
 
 
 def _sampled(
@@ -161,5 +177,5 @@ def fitted_with_curve(
         else:
             learner = learner_by_name(name, group, task).fit(q[:count], torque[:count])
         done = count
-        curve.append(CurvePoint(count, test.rmse(learner)))
+        curve.append(test.point(count, learner))
     return learner, tuple(curve)

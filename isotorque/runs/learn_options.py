@@ -39,7 +39,8 @@ def learn_options(
     learner, samples
         None: the default of the strategy.
     given
-        Options of the arm (`ArmOptions`), ``n_min`` and ``confirm``, as far as the user gave them.
+        Options of the arm (`ArmOptions`), ``n_min``, ``confirm`` and ``learn_anyway``, as far as
+        the user gave them.
 
     Raises
     ------
@@ -63,4 +64,7 @@ def learn_options(
         # one robot in one run: the recording refuses another one
         discovery = replace(discovery, snap=arm.snap)
     n_min, confirm = given.get("n_min", n_min), given.get("confirm", confirm)
-    return RunOptions(robot, arm, n_min, samples, learner, symmetries, strategy, discovery, confirm)
+    anyway = bool(given.get("learn_anyway", False))
+    return RunOptions(
+        robot, arm, n_min, samples, learner, symmetries, strategy, discovery, confirm, anyway
+    )

@@ -10,6 +10,7 @@ import numpy as np
 
 from isotorque.runs.experiment import RunOutcome, save_learner
 from isotorque.runs.learning_curve import CurvePoint
+from isotorque.runs.run_options import RunOptions
 from symbolic.gravity import GravityModel
 from symbolic.robots import Robot
 from verify.models import verify_model
@@ -26,7 +27,7 @@ class LearnedModel:
     gravity : GravityModel
         The truth that the model is judged against.
     learner
-        The model: ``predict(q)``.
+        The model: ``predict(q)``; None where nothing was learned.
     choices : dict
         Strategy, learner, symmetries: what was chosen, plain data.
     samples : int
@@ -54,28 +55,39 @@ class LearnedModel:
     remarks: tuple[str, ...] = ()
     details: dict[str, Any] = field(default_factory=dict)
 
-    def save(self, out: Path) -> Path:
-        """Write the model to a directory; return the path of its JSON."""
+    def save(self, out: Path) -> Path | None:
+        """Write the model, if there is one, to a directory; return the path of its JSON."""
+        if self.learner is None:
+            return None
         return save_learner(self.learner, self.robot, self.choices, out)
 
-    def document(self, model: Path) -> dict[str, Any]:
+    def document(self, model: Path | None) -> dict[str, Any]:
         """Judge the model, saved at a path; return all there is to tell, for JSON."""
-        judged = verify_model(self.learner, self.gravity, limits=self.robot.limits)
         return {
             "robot": self.robot.name,
             **self.choices,
             "samples": self.samples,
             "discovery_motions": self.discovery_motions,
             "relations": self.relations,
-            "rmse_torque": judged.rmse,
-            "rmse_by_joint": judged.rmse_by_joint,
-            "test": judged.targets[0].name,
+            **self._errors(),
             "largest_torque": float(np.max(self.largest_torques())),
-            "curve": [{"samples": p.samples, "rmse": p.rmse} for p in self.curve],
+            "curve": [
+                {"samples": p.samples, "rmse": p.rmse, "largest": p.largest} for p in self.curve
+            ],
             "remarks": list(self.remarks),
             **self.details,
-            "model": str(model),
+            "model": None if model is None else str(model),
         }
+
+    def _errors(self) -> dict[str, Any]:
+        """Torque errors of all joints; null where nothing was learned."""
+        names = ("rmse_torque", "rmse_by_joint", "largest_error", "largest_error_by_joint", "test")
+        if self.learner is None:
+            return dict.fromkeys(names)
+        judged = verify_model(self.learner, self.gravity, limits=self.robot.limits)
+        largest, found = float(judged.largest_error.max()), judged.largest_error
+        values = (judged.rmse, judged.rmse_by_joint, largest, found, judged.targets[0].name)
+        return dict(zip(names, values, strict=True))
 
     def largest_torques(self) -> Any:
         """Bounds of the true torques, (n,) [N m]."""
@@ -84,18 +96,45 @@ class LearnedModel:
 
 def model_of_run(run: RunOutcome) -> LearnedModel:
     """Return what an exploration ended with."""
-    options, group = run.options, run.scheme.group
+    group = run.scheme.group
     return LearnedModel(
         run.robot,
         run.gravity,
         run.scheme.learner,
-        {k: getattr(options, k) for k in ("strategy", "learner", "symmetries")},
+        choices(run.options, run.gate_passed),
         len(run.steps),
         len(run.motions),
         1 if group is None else group.order,
         tuple(run.curve),
-        missing_symmetries(run),
+        (*missing_symmetries(run), *gate_remarks(run)),
     )
+
+
+def choices(options: RunOptions, gate_passed: bool) -> dict[str, Any]:
+    """Return what was chosen, as it is kept with the model."""
+    chosen = {k: getattr(options, k) for k in ("strategy", "learner", "symmetries")}
+    if options.learn_anyway and not gate_passed:
+        chosen["learn_anyway"] = True
+    return chosen
+
+
+def gate_remarks(run: RunOutcome) -> tuple[str, ...]:
+    """Say that too little was known of the symmetries to begin learning, and what came of it."""
+    if run.gate_passed:
+        return ()
+    gates, needed = run.scheme.gates, run.options.n_min
+    if not gates:
+        known = "no torque was held that shows any"
+    elif gates[-1].order < needed:
+        known = f"{gates[-1].order} known after {gates[-1].targets} target torques"
+    else:
+        known = f"{gates[-1].order} known after {gates[-1].targets} target torques, not confirmed"
+    ending = (
+        "learned anyway (--learn-anyway)"
+        if run.options.learn_anyway
+        else "nothing learned; --learn-anyway learns all the same"
+    )
+    return (f"gate before learning not passed: {needed} relations needed, {known}: {ending}",)
 
 
 def missing_symmetries(run: RunOutcome) -> tuple[str, ...]:

@@ -24,10 +24,21 @@ FIRST_FIT = 8
 
 @dataclass(frozen=True, eq=False)
 class CurvePoint:
-    """The model after some samples: torque RMSE on the dense set [N m], share of BCTS explored."""
+    """The model after some samples: torque error on the dense set, and share of BCTS explored.
+
+    Attributes
+    ----------
+    samples : int
+        Samples learned from.
+    rmse, largest : float
+        Torque RMSE, and largest error of any joint, on the dense set [N m].
+    explored : float or None
+        Share of the BCTS within the exploration's radius of what was learned from.
+    """
 
     samples: int
     rmse: float
+    largest: float
     explored: float | None = None
 
 
@@ -45,9 +56,11 @@ class DenseTest:
         self._torque = gravity.torque(self._q)
         self._active = [name not in gravity.free_joints for name in robot.joint_names]
 
-    def rmse(self, learner: Any) -> float:
-        """Torque RMSE of a learner over active joints [N m]."""
-        return torque_rmse(learner.predict(self._q) - self._torque, self._active)
+    def point(self, samples: int, learner: Any, explored: float | None = None) -> CurvePoint:
+        """Test a learner that has seen so many samples, at every joint."""
+        error = learner.predict(self._q) - self._torque
+        largest = float(np.abs(error).max())
+        return CurvePoint(samples, torque_rmse(error, self._active), largest, explored)
 
 
 def curve_counts(learner: str, total: int) -> frozenset[int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from learning.exploration.by_name import DIRECTIONS, EXPLORATIONS
@@ -94,6 +95,10 @@ class RunOptions:
         The simulated arm of the discovery, where it is another.
     confirm : int
         Torques at the end of the discovery that are chosen to say most about the relations.
+    learn_anyway : bool
+        Whether to learn although fewer relations than ``n_min`` are known and confirmed.
+    tolerance : float or None
+        Torque error that the model is judged with [N m]; None: `default_tolerance`.
     """
 
     robot: str
@@ -105,6 +110,8 @@ class RunOptions:
     strategy: str = DIRECTIONS
     discovery_arm: ArmOptions | None = None
     confirm: int = 0
+    learn_anyway: bool = False
+    tolerance: float | None = None
 
     def __post_init__(self) -> None:
         check_symmetries(self.symmetries)
@@ -114,6 +121,8 @@ class RunOptions:
             raise InputError("run", "--n-min", self.n_min, "at least 1")
         if self.confirm < 0:
             raise InputError("run", "--confirm", self.confirm, "at least 0")
+        if self.tolerance is not None and not 0 <= self.tolerance < math.inf:
+            raise InputError("run", "--tolerance", self.tolerance, "a number >= 0 [N m]")
         if self.strategy not in STRATEGIES:
             raise InputError("run", "--strategy", self.strategy, ", ".join(STRATEGIES))
         check_learner(self.learner)

@@ -6,7 +6,7 @@ import csv
 import io
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str, int, int, str], None]
 COLUMNS = (
-    "robot", "learner", "strategy", "symmetries", "seed", "samples", "rmse", "explored",
-    "motions", "inadmissible",
+    "robot", "learner", "strategy", "symmetries", "seed", "samples", "rmse", "largest", "explored",
+    "motions", "inadmissible", "gate",
 )  # fmt: skip
 
 
@@ -42,9 +42,10 @@ class SweepResult:
     Attributes
     ----------
     rows : tuple of dict
-        One per evaluation of a run, with `COLUMNS`: torque RMSE on the dense set [N m] after so
-        many commands, share of the BCTS explored by then; motions of the discovery before, and
-        share of the commands that were inadmissible. Other options in which runs differ follow.
+        One per evaluation of a run, with `COLUMNS`: torque RMSE and largest error on the dense set
+        [N m] after so many commands, share of the BCTS explored by then; motions of the discovery
+        before, share of the commands that were inadmissible, and whether enough relations were
+        known before learning (it goes on without). Other options in which runs differ follow.
     table, plot : Path
         ``sweep.csv`` and ``sweep.svg``.
     """
@@ -68,15 +69,19 @@ def perform_run(run: SweepRun) -> dict[str, Any]:
 
 
 def _learned(run: SweepRun, folder: Path) -> dict[str, Any]:
-    if run.options.strategy == LATTICE:
-        learned = learn_from_lattice(run.options, folder, _silent)
+    options = replace(run.options, learn_anyway=True)  # whether the gate was passed is told
+    if options.strategy == LATTICE:
+        learned = learn_from_lattice(options, folder, _silent)
         curve, motions, lost = learned.curve, learned.discovery_motions, 0.0
+        gate = not learned.choices.get("learn_anyway", False)
     else:
-        result = run_experiment(run.options, folder, _silent)
+        result = run_experiment(options, folder, _silent)
+        gate = result.gate_passed
         curve, motions = tuple(result.curve), len(result.motions)
         unsettled = sum(str(step.outcome.kind) != "settled" for step in result.steps)
         lost = unsettled / max(1, len(result.steps))
-    return {"curve": [asdict(p) for p in curve], "motions": motions, "inadmissible": lost}
+    points = [asdict(point) for point in curve]
+    return {"curve": points, "motions": motions, "inadmissible": lost, "gate": gate}
 
 
 def _silent(stage: str, done: int, total: int, note: str) -> None:
@@ -108,7 +113,7 @@ def sweep(
         For results made by other versions, and files that cannot be written; for runs that were
         refused, after the table of all others is written.
     """
-    parts = Parts(output_directory(out) / "parts", {"kind": "sweep"})
+    parts = Parts(output_directory(out) / "parts", {"kind": "sweep", "columns": list(COLUMNS)})
     done = parts.load(run.name for run in runs)
     progress("runs", len(done), len(runs), f"{len(done)} were done before" if done else "")
     left = [run for run in runs if run.name not in done]
@@ -155,9 +160,11 @@ def _rows(run: SweepRun, result: dict[str, Any], more: Sequence[str]) -> list[di
             "seed": run.seed,
             "samples": point["samples"],
             "rmse": point["rmse"],
+            "largest": point["largest"],
             "explored": point["explored"],
             "motions": result["motions"],
             "inadmissible": result["inadmissible"],
+            "gate": result["gate"],
             **{name: run.option(name) for name in more},
         }
         for point in result["curve"]

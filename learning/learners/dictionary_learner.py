@@ -6,16 +6,17 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import BaseEstimator, RegressorMixin, clone
+from sklearn.base import BaseEstimator, clone
 
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.sample_dictionary import SampleDictionary
 from learning.symmetry_use import GroupArrays
+from learning.torque_score import TorqueRegressor
 
 Array = NDArray[np.float64]
 
 
-class DictionaryLearner(RegressorMixin, BaseEstimator):
+class DictionaryLearner(TorqueRegressor, BaseEstimator):
     """A regressor that learns from a ``SampleDictionary`` (the paper's outlook iv).
 
     Parameters

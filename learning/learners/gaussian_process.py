@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
-from sklearn.base import RegressorMixin
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, Kernel, WhiteKernel
@@ -19,6 +18,7 @@ from learning.learners.saved_learner import SavedLearner
 from learning.learners.smooth_process import smooth_mean
 from learning.learners.symmetric_kernel import SymmetrisedPeriodicKernel
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
 from symbolic.trigonometric import TrigonometricPolynomial
 
@@ -34,7 +34,7 @@ LOSS = 1e-13
 LENGTHS = np.geomspace(0.25, 16.0, 13)
 
 
-class SymmetricGaussianProcess(RegressorMixin, SavedLearner):
+class SymmetricGaussianProcess(TorqueRegressor, SavedLearner):
     """scikit-learn's Gaussian process with `SymmetrisedPeriodicKernel`, exactly equivariant.
 
     Parameters

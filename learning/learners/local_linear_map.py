@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import RegressorMixin
 
 from learning.learners.cell_grid import make_cell_grid, sees_several_images, with_room
 from learning.learners.cell_search import enter
@@ -22,6 +21,7 @@ from learning.learners.sample_checks import (
 )
 from learning.learners.saved_learner import SavedLearner
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 FIRST_ROOM = 64  # prototypes; doubled whenever it runs out
 
 
-class LocalLinearMap(RegressorMixin, SavedLearner):
+class LocalLinearMap(TorqueRegressor, SavedLearner):
     """Blend of local linear functions around prototypes that appear where samples do (Eq. 17-22).
 
     Parameters

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import RegressorMixin
 
 from learning.learners.canonical import CanonicalFold
 from learning.learners.network_inputs import NetworkInputs
@@ -16,6 +15,7 @@ from learning.learners.sample_checks import checked_configurations, checked_samp
 from learning.learners.saved_learner import SavedLearner
 from learning.learners.tanh_layer import TanhLayer
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ INPUTS = ("sincos", "raw")
 TOGETHER = 4_000_000
 
 
-class FeedForwardNetwork(RegressorMixin, SavedLearner):
+class FeedForwardNetwork(TorqueRegressor, SavedLearner):
     """One hidden layer of tanh units (the paper's section 6), with symmetries.
 
     Parameters

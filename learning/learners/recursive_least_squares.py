@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import RegressorMixin
 
 from learning.learners.cell_grid import make_cell_grid, with_room
 from learning.learners.cell_search import enter
@@ -25,6 +24,7 @@ from learning.learners.saved_learner import SavedLearner
 from learning.learners.square_root_filter import SquareRootFilter
 from learning.learners.tied_basis import copies_of, least_distance, tied_features_batch
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
@@ -52,7 +52,7 @@ class _Solved:
     stale: bool = True
 
 
-class RecursiveLeastSquares(RegressorMixin, SavedLearner):
+class RecursiveLeastSquares(TorqueRegressor, SavedLearner):
     """All local linear functions fitted together, exactly equivariant, from few samples.
 
     Parameters

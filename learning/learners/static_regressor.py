@@ -10,18 +10,18 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.linalg import lstsq
-from sklearn.base import RegressorMixin
 
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.saved_learner import SavedLearner
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
 from symbolic.robots import Robot, load_robot
 
 Array = NDArray[np.float64]
 
 
-class StaticRegressor(RegressorMixin, SavedLearner):
+class StaticRegressor(TorqueRegressor, SavedLearner):
     """Masses and first moments of an arm whose kinematics is known.
 
     Parameters

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lstsq
-from sklearn.base import RegressorMixin
 
 from learning.learners.equivariant_basis import (
     multi_affine_frequencies,
@@ -18,13 +17,14 @@ from learning.learners.equivariant_basis import (
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.saved_learner import SavedLearner
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
 from symbolic.trigonometric import TrigonometricPolynomial
 
 Array = NDArray[np.float64]
 
 
-class EquivariantTrigonometric(RegressorMixin, SavedLearner):
+class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
     """The torque of a rigid arm up to its coefficients, which are found by least squares.
 
     Parameters

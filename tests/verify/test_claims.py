@@ -14,8 +14,8 @@ from verify.relation_files import RelationsFile, load_relations, relations_docum
 from verify.verdict import Status, all_passed
 
 
-def file_of(relations, order=None, joint_names=None):
-    return RelationsFile("r.json", tuple(relations), joint_names, order)
+def file_of(relations, order=None, joint_names=None, complete=False):
+    return RelationsFile("r.json", tuple(relations), joint_names, order, complete)
 
 
 @pytest.mark.parametrize("name", ["pendulum", "2r", "3r", "4r-planar"])
@@ -31,8 +31,33 @@ def test_a_true_file_passes_whole(tmp_path, arms, name):
 
 def test_a_missing_relation_is_noticed_only_if_the_file_claims_completeness(two_link):
     some = list(two_link.group)[:5]
-    assert verify_relations_file(file_of(some, order=5), two_link.gravity)[-1].passed is False
+    claimed = verify_relations_file(file_of(some, order=5, complete=True), two_link.gravity)
+    assert [verdict.passed for verdict in claimed[-2:]] == [True, False]
+    assert "all that there are (8)" in claimed[-1].claim
+    assert not verify_relations_file(file_of(some, order=5), two_link.gravity)[
+        -1
+    ].passed  # no group
     assert all_passed(verify_relations_file(file_of(some), two_link.gravity))
+    # a subgroup lacks some and is wrong in nothing; how many there are is told
+    part = [r for r in two_link.group if (r.Y == 1).all()]
+    verdicts = verify_relations_file(file_of(part, order=len(part)), two_link.gravity)
+    assert all_passed(verdicts)
+    assert (
+        verdicts[-1].claim
+        == f"the {len(part)} relations listed (of the 8 that there are) form a group"
+    )
+
+
+def test_completeness_is_read_from_the_file(tmp_path, two_link):
+    path = tmp_path / "r.json"
+    document = relations_document(list(two_link.group)[:4], two_link.gravity.joint_names)
+    for complete, passed in ((True, False), (False, True)):
+        path.write_text(json.dumps(document | {"complete": complete}))
+        assert load_relations(path).complete is complete
+        assert all_passed(verify_relations_file(load_relations(path), two_link.gravity)) is passed
+    path.write_text(json.dumps(document | {"complete": "yes"}))
+    with pytest.raises(InputError, match='complete is "yes"; accepted: true or false'):
+        load_relations(path)
 
 
 def test_a_relation_listed_twice_does_not_complete_the_list(two_link):

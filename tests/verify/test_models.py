@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot
+from symbolic.symmetries import primary_symmetries
+from verify.largest_errors import default_tolerance
 from verify.models import torque_rmse, verify_model
+from verify.stability import has_stable_image
+from verify.strategies import known_arms
 from verify.targets import dense_targets, grid_targets, scattered_targets
 from verify.verdict import Status, all_passed
 
@@ -128,14 +136,105 @@ def test_errors_at_joint_limits_are_told_apart(two_link):
     assert verify_model(edge, two_link.gravity).at_limits is None
 
 
-def test_free_joints_do_not_count(upright):
+def test_joints_that_gravity_does_not_load_are_judged_too(upright):
     gravity = GravityModel(upright)
     assert gravity.free_joints == ("joint1",)
-    model = Learned(gravity, lambda q: np.array([100.0, 0.1]) + 0 * q)
+    model = Learned(gravity, lambda q: np.array([5.0, 0.1]) + 0 * q)
     judgement = verify_model(model, gravity, tolerance=0.11, largest_tolerance=0.11)
-    assert judgement.rmse == pytest.approx(0.1)
-    assert judgement.rmse_by_joint == pytest.approx([100.0, 0.1])
-    assert all_passed(judgement.verdicts)
+    assert judgement.rmse == pytest.approx(np.hypot(5.0, 0.1))
+    assert judgement.rmse_by_joint == pytest.approx([5.0, 0.1])
+    assert judgement.largest_error == pytest.approx([5.0, 0.1])
+    assert [verdict.status for verdict in judgement.verdicts] == [Status.REFUTED] * 2
+    # nor are departures from symmetry and period overlooked there
+    turning = Learned(gravity, lambda q: 5.0 * q[:, ::-1] * [1.0, 0.0])
+    group = primary_symmetries(gravity.potential)
+    assert verify_model(turning, gravity, group=group).equivariance_error > 1.0
+    assert verify_model(turning, gravity).periodicity_error == pytest.approx(10.0 * np.pi)
+    # what is added at joints without gravity is not diluted by them
+    alone = verify_model(Learned(gravity, lambda q: 0 * q + [0.0, 0.1]), gravity)
+    assert alone.rmse == pytest.approx(0.1)
+
+
+@settings(max_examples=12)
+@given(data=st.data(), arm=known_arms(max_joints=4, planted=None))
+def test_a_defect_at_any_joint_is_refuted_and_the_truth_passes(data, arm):
+    gravity = arm.gravity
+    limits = np.array([[-np.pi, np.pi]] * gravity.n)
+    tolerance = default_tolerance(gravity, limits)
+    accepted = {"tolerance": tolerance, "largest_tolerance": tolerance}
+    assert all_passed(verify_model(gravity.torque, gravity, **accepted).verdicts)
+    joint = data.draw(st.integers(0, gravity.n - 1), "joint")
+    kind = data.draw(st.sampled_from(["offset", "wave", "dent"]), "kind")
+    size = data.draw(st.floats(1.5, 10.0), "size") * tolerance[joint]
+
+    def defect(q):
+        error = np.zeros_like(q)
+        shape = {
+            "offset": np.ones(len(q)),
+            "wave": np.sqrt(2.0) * np.sin(q[:, joint] + 0.3),
+            "dent": np.exp(-0.5 * ((q - 0.4) ** 2).sum(axis=1)),
+        }
+        error[:, joint] = size * shape[kind]
+        return error
+
+    refuted = verify_model(Learned(gravity, defect), gravity, **accepted)
+    assert not all_passed(refuted.verdicts)
+    largest = refuted.verdicts[-1]
+    assert largest.status is Status.REFUTED
+    where = largest.counterexample[None]
+    assert np.abs(defect(where)[0, joint]) > tolerance[joint]
+    assert refuted.largest_error[joint] == pytest.approx(np.abs(defect(where)[0, joint]), rel=1e-3)
+    if kind != "dent":
+        assert refuted.verdicts[0].status is Status.REFUTED
+
+
+def test_nothing_is_claimed_beside_a_torque_of_zero(upright):
+    gravity = GravityModel(dataclasses.replace(upright, masses=np.zeros(2)))
+    verify_model(lambda q: 0 * q, gravity)  # measured, not claimed
+    for claim in (
+        "tolerance", "largest_tolerance", "equivariance_tolerance", "periodicity_tolerance",
+    ):  # fmt: skip
+        with pytest.raises(InputError, match="gravity torque is zero at every joint"):
+            verify_model(lambda q: 0 * q, gravity, **{claim: 0.1})
+
+
+def test_the_part_that_an_arm_can_learn_is_judged_apart(arms):
+    arm = arms["3r"]
+    q = dense_targets([[-np.pi, np.pi]] * 3).q
+    held = has_stable_image(q, arm.gravity, arm.group)
+    assert 0 < held.sum() < len(q)
+    # wrong only where no orbit has a stable member
+    model = Learned(
+        arm.gravity,
+        lambda q: np.where(has_stable_image(q, arm.gravity, arm.group), 0.01, 2.0)[:, None] + 0 * q,
+    )
+    judged = verify_model(
+        model, arm.gravity, orbits=arm.group, tolerance=0.05, largest_tolerance=0.05
+    )
+    assert [verdict.passed for verdict in judged.verdicts] == [True, True, False, False]
+    stable, whole = judged.targets[1], judged.targets[0]
+    assert stable.largest == pytest.approx(0.01)
+    assert whole.largest == pytest.approx(2.0)
+    assert "orbits with a stable member" in judged.verdicts[1].claim
+    assert "on the whole space" in judged.verdicts[3].claim
+
+
+def test_the_default_tolerance_is_a_share_of_each_joint_and_never_nothing(upright, two_link):
+    limits = np.array([[-np.pi, np.pi]] * 2)
+    upper = default_tolerance(GravityModel(upright), limits)
+    assert upper[0] == pytest.approx(0.1 * upper[1])  # not loaded: a thousandth of the other
+    narrow = np.array([[np.pi / 4 - 0.1, np.pi / 4]] * 2)  # not everywhere
+    corner = np.abs(two_link.gravity.torque(narrow[:, 0]))  # the largest: cos(q1 + q2) falls
+    allowed = default_tolerance(two_link.gravity, narrow)
+    assert allowed[1] == pytest.approx(np.maximum(0.01 * corner[1], 0.001 * corner[0]))
+    assert allowed[1] < 0.5 * default_tolerance(two_link.gravity, [[-np.inf, np.inf]] * 2)[1]
+
+
+@pytest.mark.parametrize("bad", [-1.0, np.nan, [1.0, 1.0, 1.0], [[1.0, 1.0]]])
+def test_tolerances_that_mean_nothing_are_refused(two_link, bad):
+    for name in ("tolerance", "largest_tolerance"):
+        with pytest.raises(InputError, match="tolerance is"):
+            verify_model(two_link.gravity.torque, two_link.gravity, **{name: bad})
 
 
 def test_orbits_with_and_without_a_stable_member_are_told_apart(arms):

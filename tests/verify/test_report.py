@@ -16,7 +16,7 @@ from symbolic.relations import SymmetryRelation
 from verify.figures.learning_curves import LearningCurve
 from verify.figures.level_sets import planar_chain
 from verify.figures.torques import ProfileTrace
-from verify.learned_symmetries import completeness, judge_relations
+from verify.learned_symmetries import judge_relations, soundness
 from verify.models import verify_model
 from verify.report import render_report, verdicts_page, write_report
 from verify.report_document import report_document
@@ -122,6 +122,7 @@ def full(two_link):
             timeouts=0,
             projected=5,
             explored_share=0.875,
+            explored_radius=0.3,
         ),
         curves=(LearningCurve("dense set", samples, 1 / samples),),
         goal=0.0053,
@@ -136,7 +137,7 @@ def full(two_link):
             curves=((0, 1, rng.uniform(-3, 3, (20, 2))),),
             links=planar_chain(q, [0.25, 0.25]),
         ),
-        verdicts=(completeness(symmetry),),
+        verdicts=(soundness(symmetry),),
     )
 
 
@@ -188,7 +189,7 @@ def test_the_numbers_of_the_run_stand_in_the_page(full_page):
         "0.0123 Nm",  # RMSE
         "62 s",  # of computing
         "(9.1, 3.2)",
-        "87.5 % of the domain",
+        "87.5 % of the domain lies within 0.3 rad",
         "401 torques commanded: 390 settled, 11 met a joint limit",
         "q1′ = −q1 + 0.000123",
         "8 of 8 relations learned, 0 false",
@@ -274,6 +275,82 @@ def test_a_failed_claim_fails_the_run(full, without_pictures):
     assert '<span class="badge refuted">failed</span>' in page
     assert "the sum of 1 &lt; 2" in page
     assert "q = (0.25, −1.5)" in page
+
+
+def test_no_column_is_clipped_on_paper(full_page):
+    style = full_page[: full_page.index("</style>")]
+    screen, printed = style.split("@media print {")
+    assert "size: A4" in printed
+    # what hides or forbids to wrap on a screen does not on paper
+    for rule in re.findall(
+        r"([^{}]+)\{[^}]*(?:overflow(?:-x)?: (?:hidden|auto)|nowrap)[^}]*\}", screen
+    ):
+        names = [name.strip() for name in rule.split(",")]
+        assert any(name in printed for name in names), rule
+    assert "hidden" not in printed
+    assert "nowrap" not in printed
+
+
+def test_the_first_line_says_what_holds_and_what_does_not(full, two_link, without_pictures):
+    gravity = two_link.gravity
+
+    def first_line(report):
+        found = re.search(r'<p class="holds">(.*?)</p>', render_report(report), re.S)
+        assert report_document(report)["summary"] == list(report.summary)
+        return found[1]
+
+    line = first_line(full)
+    assert line.startswith(
+        "Passed. Relations: 8 of 8 known, none false. Static torques: not judged."
+    )
+    assert "Model: holds on the whole space, RMSE 0.0123, largest error 0.0123 N m" in line
+    wrong = verify_model(
+        lambda q: gravity.torque(q) + np.array([0.0, 0.03]),
+        gravity,
+        tolerance=0.02,
+        largest_tolerance=0.02,
+    )
+    line = first_line(dataclasses.replace(full, model=wrong))
+    assert line.startswith("Failed.")
+    assert "Model: does not hold on the whole space, RMSE 0.0212, largest error 0.03 N m" in line
+    few = judge_relations(list(two_link.group)[:5], gravity, method="identification")
+    line = first_line(dataclasses.replace(full, symmetry=few, verdicts=(soundness(few),)))
+    assert line.startswith("Passed. Relations: 5 of 8 known, none false; not all that there are.")
+    assert "Model: none" in first_line(dataclasses.replace(full, model=None))
+    gate = dataclasses.replace(full.discovery, gates=(Gate(1, 2, False),))
+    assert "Gate of 8 relations before learning: not passed, nothing learned" in first_line(
+        dataclasses.replace(full, discovery=gate)
+    )
+
+
+def test_joints_that_gravity_does_not_load_are_left_out_of_pictures(full, two_link):
+    names = ("pan", "shoulder", "elbow")
+    rng = np.random.default_rng(0)
+    times = np.linspace(0, 2, 30)
+    trace = ProfileTrace(times, rng.normal(size=(30, 3)), rng.normal(size=(30, 3)), "settled")
+    report = dataclasses.replace(
+        full,
+        setup=dataclasses.replace(SETUP, joint_names=names, unloaded=("pan",)),
+        domain=None,
+        level_sets=None,
+        discovery=dataclasses.replace(full.discovery, traces=(trace,)),
+        static_torques=StaticTorqueReport(rng.normal(size=(9, 3)), np.zeros((0, 3))),
+        exploration=ExplorationReport(rng.normal(size=(9, 3)), rng.normal(size=(9, 3)), 9, 9, 0, 0),
+    )
+    pictures = {picture.name: picture for picture in report_pictures(report)}
+    for name in ("fig3-torque-profiles", "fig4-joint-trajectories", "fig7-static-torques",
+                 "fig10-explored"):  # fmt: skip
+        assert pictures[name].caption.endswith("as gravity does not load it: pan."), name
+    for name in ("fig7-static-torques", "fig10-explored"):
+        (axes,) = pictures[name].figure.axes
+        assert "_2" in axes.get_xlabel() or "2" in axes.get_xlabel()
+        assert "3" in axes.get_ylabel()
+    lines = pictures["fig3-torque-profiles"].figure.axes[0].get_legend().get_texts()
+    assert len(lines) == 2
+    alone = dataclasses.replace(report.setup, unloaded=("pan", "shoulder"))
+    assert "fig7-static-torques" not in {
+        picture.name for picture in report_pictures(dataclasses.replace(report, setup=alone))
+    }
 
 
 def test_names_cannot_smuggle_in_markup():

@@ -86,6 +86,7 @@ def explored_map(
     *,
     domain: ArrayLike | None = None,
     joint_names: Sequence[str] | None = None,
+    joints: Sequence[int] | None = None,
 ) -> Figure:
     """Draw explored (red) and learned (blue) configurations (Fig. 10).
 
@@ -99,6 +100,8 @@ def explored_map(
         Corners of the domain of two joints, (v, 2) [rad].
     joint_names
         Labels of the joints.
+    joints
+        Numbers, from 0, of the joints to be shown; all by default.
 
     Returns
     -------
@@ -109,7 +112,7 @@ def explored_map(
     n = red.shape[1]
     names = names_of(joint_names, n)
     with settings():
-        pairs = joint_pairs(n)
+        pairs = joint_pairs(n, joints)
         figure, axes = panels(len(pairs), width=3.7, height=3.75)
         for ax, (i, j) in zip(axes, pairs, strict=True):
             angle_plane(ax, (names[i], names[j]))

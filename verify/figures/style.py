@@ -88,17 +88,25 @@ def panels(count: int, *, width: float = 3.4, height: float = 3.2) -> tuple[Figu
     return figure, list(axes[0])
 
 
-def joint_pairs(n: int) -> list[tuple[int, int]]:
+def joint_pairs(n: int, joints: Sequence[int] | None = None) -> list[tuple[int, int]]:
     """Return the pairs of joints that n-dimensional sets are projected on: at most three.
+
+    Parameters
+    ----------
+    n
+        Number of joints.
+    joints
+        Numbers, from 0, of those to be shown; all by default.
 
     Examples
     --------
-    >>> joint_pairs(2), joint_pairs(3)
-    ([(0, 1)], [(0, 1), (0, 2), (1, 2)])
+    >>> joint_pairs(2), joint_pairs(3), joint_pairs(6, [1, 2, 4, 5])
+    ([(0, 1)], [(0, 1), (0, 2), (1, 2)], [(1, 2), (1, 4), (2, 4)])
     """
-    if n < 2:
-        return [(0, 0)]
-    return list(itertools.combinations(range(min(n, 3)), 2))
+    shown = range(n) if joints is None else joints
+    if len(shown) < 2:
+        return [(shown[0], shown[0])]
+    return list(itertools.combinations(shown[:3], 2))
 
 
 def angle_axis(axes: Axes, which: str, name: str, limits: tuple[float, float] | None) -> None:

@@ -62,13 +62,17 @@ class ProfileTrace:
                 raise InputError("profile trace", f"shape of {field}", found, f"{shape}")
 
 
-def torque_profiles(traces: Sequence[ProfileTrace]) -> Figure:
+def torque_profiles(
+    traces: Sequence[ProfileTrace], *, joints: Sequence[int] | None = None
+) -> Figure:
     """Draw torque profiles one after the other (Fig. 3), one line per joint.
 
     Parameters
     ----------
     traces
         Profiles in the order in which they were played.
+    joints
+        Numbers, from 0, of the joints to be shown; all by default.
 
     Returns
     -------
@@ -77,9 +81,9 @@ def torque_profiles(traces: Sequence[ProfileTrace]) -> Figure:
     with settings():
         figure, (ax,) = panels(1, width=5.6, height=2.5)
         start = 0.0
-        n = np.shape(traces[0].torques)[1] if traces else 0
+        shown = _shown(traces, joints)
         for trace in traces:
-            for joint in range(n):
+            for joint in shown:
                 ax.plot(
                     start + trace.times, trace.torques[:, joint], color=JOINTS[joint % len(JOINTS)],
                     label=subscript("\\tau", joint + 1) if start == 0.0 else None,
@@ -89,11 +93,13 @@ def torque_profiles(traces: Sequence[ProfileTrace]) -> Figure:
         ax.set_xlim(0.0, max(start, 1e-9))
         ax.set_xlabel("time [s]")
         ax.set_ylabel("torque [N m]")
-        _legend(ax, n)
+        _legend(ax, len(shown))
         return figure
 
 
-def joint_trajectories(traces: Sequence[ProfileTrace]) -> Figure:
+def joint_trajectories(
+    traces: Sequence[ProfileTrace], *, joints: Sequence[int] | None = None
+) -> Figure:
     """Draw the motion under torque profiles (Fig. 4).
 
     Parameters
@@ -101,6 +107,8 @@ def joint_trajectories(traces: Sequence[ProfileTrace]) -> Figure:
     traces
         Profiles in the order in which they were played. Black dots mark where the arm settled,
         red crosses where it met a joint limit (and went home) or did not settle in time.
+    joints
+        Numbers, from 0, of the joints to be shown; all by default.
 
     Returns
     -------
@@ -109,20 +117,21 @@ def joint_trajectories(traces: Sequence[ProfileTrace]) -> Figure:
     with settings():
         figure, (ax,) = panels(1, width=5.6, height=2.5)
         start = 0.0
-        n = np.shape(traces[0].q)[1] if traces else 0
+        shown = _shown(traces, joints)
         for trace in traces:
-            for joint in range(n):
+            for joint in shown:
                 ax.plot(
                     start + trace.times, trace.q[:, joint], color=JOINTS[joint % len(JOINTS)],
                     label=subscript("q", joint + 1) if start == 0.0 else None,
                 )  # fmt: skip
             start += float(trace.times[-1])
             settled = trace.outcome == "settled"
-            final = trace.q[-1] if trace.final is None else trace.final
-            for before, after in zip(trace.q[-1], final, strict=True):  # the wait is not drawn
+            last = trace.q[-1, shown]
+            final = last if trace.final is None else trace.final[shown]
+            for before, after in zip(last, final, strict=True):  # the wait is not drawn
                 ax.plot([start, start], [before, after], color=FAINT, linewidth=0.8, zorder=1)
             ax.plot(
-                np.full(n, start),
+                np.full(len(shown), start),
                 final,
                 "o" if settled else "x",
                 color=INK if settled else RED,
@@ -135,7 +144,7 @@ def joint_trajectories(traces: Sequence[ProfileTrace]) -> Figure:
         ax.set_xlabel("time [s]")
         ax.set_ylabel("joint angle [rad]")
         ax.grid(True, axis="y")
-        _legend(ax, n)
+        _legend(ax, len(shown))
         return figure
 
 
@@ -145,6 +154,7 @@ def static_torque_map(
     *,
     triangles: ArrayLike | None = None,
     boundary: ArrayLike | None = None,
+    joints: Sequence[int] | None = None,
 ) -> Figure:
     """Draw static torques (blue) and torques that proved inadmissible (red crosses), Fig. 7.
 
@@ -158,6 +168,8 @@ def static_torque_map(
         Corners of the triangles of the estimated set, (t, 3, 2) [N m]; two joints only.
     boundary
         Points (p, 2) of the true set's boundary [N m], NaN rows break it; two joints only.
+    joints
+        Numbers, from 0, of the joints to be shown; all by default.
 
     Returns
     -------
@@ -167,7 +179,7 @@ def static_torque_map(
     good, bad = rows(admissible, what="admissible"), rows(inadmissible, what="inadmissible")
     n = good.shape[1]
     with settings():
-        pairs = joint_pairs(n)
+        pairs = joint_pairs(n, joints)
         figure, axes = panels(len(pairs), width=4.4, height=3.5)
         for ax, (i, j) in zip(axes, pairs, strict=True):
             if triangles is not None and n == 2:
@@ -191,6 +203,12 @@ def static_torque_map(
         axes[0].plot([], [], "x", color=RED, markersize=5, label=f"inadmissible ({len(bad)})")
         _legend(axes[0], 2)
         return figure
+
+
+def _shown(traces: Sequence[ProfileTrace], joints: Sequence[int] | None) -> list[int]:
+    if joints is not None:
+        return list(joints)
+    return list(range(np.shape(traces[0].q)[1])) if traces else []
 
 
 def _legend(ax: Axes, columns: int) -> None:

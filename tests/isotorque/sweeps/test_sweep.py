@@ -135,8 +135,8 @@ def test_a_longer_table_adds_its_runs(tmp_path, monkeypatch):
 
     def fake(run):
         asked.append(run.seed)
-        point = {"samples": 1, "rmse": 1.0 + run.seed, "explored": None}
-        return {"curve": [point], "motions": 5, "inadmissible": 0.0}
+        point = {"samples": 1, "rmse": 1.0 + run.seed, "largest": 9.0, "explored": None}
+        return {"curve": [point], "motions": 5, "inadmissible": 0.0, "gate": True}
 
     monkeypatch.setattr(sweep_module, "perform_run", fake)
     sweep(runs[:1], tmp_path, quiet, jobs=1)
