@@ -41,9 +41,10 @@ WANTED = {
 OPTIONS: dict[str, str] = {
     f.name: str(f.type)
     for f in (*fields(RunOptions), *fields(ArmOptions))
-    if f.type in READERS and f.name not in REQUIRED
+    if f.type in READERS and f.name not in (*REQUIRED, "learn_anyway")
 }
-"""What a table may say beside the required columns, each with its type: as options of `learn`."""
+"""What a table may say beside the required columns, each with its type: as options of `learn`.
+A sweep measures: it always learns, and tells whether the gate was passed."""
 
 
 @dataclass(frozen=True)

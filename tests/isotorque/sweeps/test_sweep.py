@@ -160,7 +160,10 @@ def test_strategies_and_other_options_are_columns(tmp_path):
 
 def test_all_options_of_a_run_are_columns():
     known = {f.name for kind in (RunOptions, ArmOptions) for f in fields(kind)}
-    assert known - set(OPTIONS) == {"robot", "learner", "seed", "arm", "discovery_arm"}
+    assert known - set(OPTIONS) == {
+        "robot", "learner", "seed", "arm", "discovery_arm",
+        "learn_anyway", "tolerance",  # a sweep always learns, and judges nothing
+    }  # fmt: skip
 
 
 def test_a_lattice_is_learned_from(tmp_path, capsys):
