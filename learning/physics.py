@@ -94,6 +94,10 @@ class SettleRule:
         object.__setattr__(self, "mode", choice(SettleMode, "SettleRule", "mode", self.mode))
 
 
+SMALLEST_STEP = 1e-15
+"""Smallest step of an encoder [rad]: an angle has no more digits."""
+
+
 @dataclass(frozen=True)
 class MeasurementNoise:
     """Errors of the sensors; none by default.
@@ -122,6 +126,9 @@ class MeasurementNoise:
 
     def __post_init__(self) -> None:
         _check_not_negative(self, tuple(f.name for f in fields(self)))
+        if 0.0 < self.encoder_step < SMALLEST_STEP:
+            accepted = f"0, or a number >= {SMALLEST_STEP:g} [rad]"
+            raise InputError("MeasurementNoise", "encoder_step", self.encoder_step, accepted)
 
     @property
     def is_random(self) -> bool:

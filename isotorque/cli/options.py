@@ -49,6 +49,10 @@ EncoderStep = Annotated[
 Out = Annotated[Path, typer.Option("--out", help="Directory for all results.", show_default=False)]
 
 
+LARGEST = 1e9
+"""Largest angle [rad] or torque [N m] taken: larger angles do not say where a joint is."""
+
+
 def numbers(text: str, option: str, count: int) -> list[float]:
     """Read ``count`` comma-separated numbers given to an option.
 
@@ -68,6 +72,11 @@ def numbers(text: str, option: str, count: int) -> list[float]:
         values = [float(x) for x in text.split(",")]
     except ValueError:
         values = []
-    if len(values) != count or not all(abs(x) < float("inf") for x in values):
-        raise InputError("command line", option, text, f"{count} finite numbers, with commas")
+    if len(values) != count or not all(abs(x) <= LARGEST for x in values):
+        raise InputError(
+            "command line",
+            option,
+            text,
+            f"{count} finite numbers, each at most {LARGEST:g}, with commas",
+        )
     return values
