@@ -255,6 +255,22 @@ def load_robot(
     )
 
 
+def robot_file(spec: str) -> bytes:
+    """Return the contents of the file of a robot: of a built-in one, on disk, or standard input.
+
+    Raises
+    ------
+    InputError
+        If there is none that can be read.
+
+    Examples
+    --------
+    >>> robot_file("2r")[:5]
+    b'<?xml'
+    """
+    return _read(spec)[2]
+
+
 def _checked_body(model: pin.Model, where: str) -> ArmBody:
     body = ArmBody.from_model(model, where)
     check_body(body, where)

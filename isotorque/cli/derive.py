@@ -8,10 +8,12 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, NoSnap, Quiet, RobotName
+from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, say
+from isotorque.cli.robot_options import RobotName, about, takes_robot
 
 
+@takes_robot()
 def derive(
     robot: RobotName,
     latex: Annotated[bool, typer.Option("--latex", help="Print LaTeX.")] = False,
@@ -25,7 +27,6 @@ def derive(
             "--casadi", metavar="FILE", help="Save a CasADi function.", show_default=False
         ),
     ] = None,
-    no_snap: NoSnap = False,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -37,7 +38,7 @@ def derive(
     from symbolic.gravity_views import gravity_latex, gravity_sympy, gravity_text
     from symbolic.robots import load_robot
 
-    loaded = load_robot(robot, snap=not no_snap)
+    loaded = load_robot(robot)
     start = time.perf_counter()
     gravity = GravityModel(loaded)
     seconds = time.perf_counter() - start
@@ -54,7 +55,7 @@ def derive(
         potential = gravity.significant_potential.to_float()
         emit_json(
             {
-                "robot": loaded.name,
+                **about(loaded),
                 "joints": gravity.joint_names,
                 "free_joints": gravity.free_joints,
                 "potential": [

@@ -7,19 +7,19 @@ from isotorque.cli.options import (
     EncoderStep,
     Engine,
     Json,
-    NoSnap,
     Out,
     Physics,
     Quiet,
-    RobotName,
     Seed,
     Settle,
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, row
+from isotorque.cli.robot_options import RobotName, about, takes_robot
 from isotorque.cli.run_options import Confirm, NMin
 
 
+@takes_robot()
 def discover(
     robot: RobotName,
     out: Out,
@@ -29,7 +29,6 @@ def discover(
     engine: Engine = "compiled",
     settle: Settle = "finished",
     seed: Seed = 0,
-    no_snap: NoSnap = False,
     angle_noise: AngleNoise = 0.0,
     torque_noise: TorqueNoise = 0.0,
     encoder_step: EncoderStep = 0.0,
@@ -46,9 +45,7 @@ def discover(
     from isotorque.runs.run_options import ArmOptions, RunOptions
     from learning.arm import OutcomeKind
 
-    arm = ArmOptions(
-        seed, physics, engine, settle, not no_snap, angle_noise, torque_noise, encoder_step
-    )
+    arm = ArmOptions(seed, physics, engine, settle, angle_noise, torque_noise, encoder_step)
     options = RunOptions(robot, arm, n_min, confirm=confirm)
     output_directory(out)
     with progress_bars(quiet) as progress:
@@ -57,7 +54,7 @@ def discover(
     scheme = found.scheme
     learned = scheme.learned
     document = {
-        "robot": found.robot.name,
+        **about(found.robot),
         "torques": scheme.targets,
         "settled": ends[OutcomeKind.SETTLED],
         "limit_hits": ends[OutcomeKind.LIMIT],

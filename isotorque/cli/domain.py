@@ -6,10 +6,12 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, NoSnap, Quiet, RobotName, numbers
+from isotorque.cli.options import Json, Quiet, numbers
 from isotorque.cli.output import emit_json, row
+from isotorque.cli.robot_options import RobotName, about, takes_robot
 
 
+@takes_robot()
 def domain(
     robot: RobotName,
     center: Annotated[
@@ -21,7 +23,6 @@ def domain(
             show_default="chosen",
         ),
     ] = None,
-    no_snap: NoSnap = False,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -31,14 +32,14 @@ def domain(
     from symbolic.robots import load_robot
     from symbolic.symmetries import primary_symmetries
 
-    loaded = load_robot(robot, snap=not no_snap)
+    loaded = load_robot(robot)
     at = None if center is None else numbers(center, "--center", loaded.n)
     group = primary_symmetries(GravityModel(loaded).potential)
     bcts = FundamentalDomain(group, at)
     if json:
         emit_json(
             {
-                "robot": loaded.name,
+                **about(loaded),
                 "basis": group.basis,
                 "center": bcts.center,
                 "halfspaces": bcts.halfspaces,

@@ -8,17 +8,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from isotorque.cli.options import Json, NoSnap, Quiet
+from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, say
+from isotorque.cli.robot_options import named, takes_robot
+from symbolic.robot_options import RobotOptions
 
 if TYPE_CHECKING:
     from learning.export.torque_form import TorqueForm
 
 
+@takes_robot("model")
 def export(
     model: Annotated[
-        str,
+        RobotOptions,
         typer.Argument(
+            parser=named,
             metavar="MODEL",
             help="A model.json, the directory of a run, or a robot (its analytic gravity).",
             show_default=False,
@@ -42,7 +46,6 @@ def export(
             show_default=False,
         ),
     ] = None,
-    no_snap: NoSnap = False,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -58,10 +61,15 @@ def export(
             raise InputError("command line", "--npz", npz, "a file that ends in .npz")
         described = npz.with_suffix(".json")
         _keep_others(described)
-    saved = Path(model)
-    exported = (
-        _learned(saved) if saved.is_dir() or saved.suffix == ".json" else _analytic(model, no_snap)
-    )
+    saved = Path(model.spec)
+    if saved.is_dir() or saved.suffix == ".json":
+        if model.changed:
+            found = " ".join(model.arguments())
+            accepted = "none of these: a learned model keeps its robot"
+            raise InputError("command line", f"options beside {saved}", found, accepted)
+        exported = _learned(saved)
+    else:
+        exported = _analytic(model)
     written: dict[str, Path] = {}
     if c is not None:
         write_whole(c, exported.c_source())
@@ -81,8 +89,9 @@ def export(
     if json:
         emit_json(
             {
-                "model": model,
+                "model": model.spec,
                 "robot": exported.robot,
+                "robot_options": exported.options,
                 "joints": exported.joints,
                 "kind": exported.form.KIND,
                 **{kind: str(path) for kind, path in written.items()},
@@ -104,6 +113,7 @@ class _Export:
     digest: str
     joints: tuple[str, ...]
     error: float
+    options: dict[str, Any]
     gravity: Any = None
     about: tuple[str, ...] = ()
 
@@ -143,22 +153,25 @@ def _learned(path: Path) -> _Export:
         saved.digest,
         saved.joint_names,
         largest_difference(form, saved.learner.predict),
+        saved.notes.get("robot_options", {}),
         about=about,
     )
 
 
-def _analytic(name: str, no_snap: bool) -> _Export:
+def _analytic(options: RobotOptions) -> _Export:
     from learning.export.torque_form import largest_difference
     from learning.export.waves import Waves
     from symbolic.gravity import GravityModel
     from symbolic.robots import load_robot
 
-    robot = load_robot(name, snap=not no_snap)
+    robot = load_robot(options)
     gravity = GravityModel(robot)
     potential = gravity.significant_potential.to_float()
     form = Waves.of_potential(potential.frequencies, potential.cos, potential.sin)
     error = largest_difference(form, gravity.torque)
-    return _Export(form, robot.name, robot.digest, tuple(robot.joint_names), error, gravity)
+    return _Export(
+        form, robot.name, robot.digest, robot.joint_names, error, options.as_json(), gravity
+    )
 
 
 def _keep_others(path: Path) -> None:

@@ -12,16 +12,15 @@ from isotorque.cli.options import (
     EncoderStep,
     Engine,
     Json,
-    NoSnap,
     Out,
     Physics,
     Quiet,
-    RobotName,
     Seed,
     Settle,
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, row, say
+from isotorque.cli.robot_options import RobotName, takes_robot
 from isotorque.cli.run_options import LearnAnyway, LearnerName, NMin, Samples, Symmetries
 
 SIMULATED = (
@@ -36,6 +35,7 @@ SIMULATED = (
 )
 
 
+@takes_robot()
 def learn(
     context: typer.Context,
     robot: RobotName,
@@ -73,7 +73,6 @@ def learn(
     engine: Engine = "compiled",
     settle: Settle = "finished",
     seed: Seed = 0,
-    no_snap: NoSnap = False,
     angle_noise: AngleNoise = 0.0,
     torque_noise: TorqueNoise = 0.0,
     encoder_step: EncoderStep = 0.0,
@@ -97,9 +96,7 @@ def learn(
     given = _given(context)
     if data is not None:
         _refuse(given, ("strategy", "samples", *SIMULATED), "--data")
-        recording = DataOptions(
-            robot, data, learner, symmetries, drop_outliers, seed, snap=not no_snap
-        )
+        recording = DataOptions(robot, data, learner, symmetries, drop_outliers, seed)
         with progress_bars(quiet) as progress:
             learned = learn_from_data(recording, out, progress)
     else:
@@ -123,14 +120,11 @@ def learn(
 
 def _given(context: typer.Context) -> dict[str, Any]:
     """Options that stand on the command line, with their values."""
-    named = {
+    return {
         name: value
         for name, value in context.params.items()
         if "DEFAULT" not in str(context.get_parameter_source(name))
     }
-    if "no_snap" in named:
-        named["snap"] = not named.pop("no_snap")
-    return named
 
 
 def _refuse(given: dict[str, Any], names: tuple[str, ...], beside: str) -> None:

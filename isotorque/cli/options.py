@@ -7,23 +7,11 @@ from typing import Annotated
 
 import typer
 
-RobotName = Annotated[
-    str,
-    typer.Argument(
-        metavar="ROBOT",
-        help="A built-in robot (see `isotorque robots`) or a URDF file.",
-        show_default=False,
-    ),
-]
 Json = Annotated[
     bool, typer.Option("--json", help="Print one JSON document and nothing else on stdout.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress bars and messages.")]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of all random choices.")]
-NoSnap = Annotated[
-    bool,
-    typer.Option("--no-snap", help="Keep angles that are within 1e-5 rad of a multiple of pi/2."),
-]
 Physics = Annotated[
     str,
     typer.Option("--physics", metavar="MODE", help="open_loop, geared or guided."),

@@ -10,6 +10,8 @@ import typer
 
 from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, plain, row, say
+from isotorque.cli.robot_options import named, takes_robot
+from symbolic.robot_options import RobotOptions
 
 if TYPE_CHECKING:
     from learning.relations.candidate_maps import JudgedCandidate
@@ -19,17 +21,20 @@ if TYPE_CHECKING:
 PHASE = "discovery"
 
 
+@takes_robot("candidates")
 def relations(
     run: Annotated[
         Path, typer.Argument(metavar="RUN", help="Directory of a discovery.", show_default=False)
     ],
     candidates: Annotated[
-        str | None,
+        RobotOptions | None,
         typer.Option(
             "--candidates",
+            parser=named,
             metavar="FILE|ROBOT|exact",
             help="Relations to test against the recording: a relations file (.json), or those that "
-            "the geometry of a robot implies; exact: of the robot that RUN names.",
+            "the geometry of a robot implies; exact: of the robot that RUN "
+            "names. Options of a robot that are not given are as recorded.",
             show_default=False,
         ),
     ] = None,
@@ -69,6 +74,7 @@ def relations(
         recorded_limits,
         relations_found,
     )
+    from isotorque.runs.recorded_robot import recorded_options
     from learning.recordings.recording_reader import RecordingReader
     from learning.relations.candidate_maps import judge_candidates
     from learning.relations.relation_learning import learn_relations
@@ -83,16 +89,17 @@ def relations(
     judged = judge_candidates(claims, samples.q, samples.tau, noise=noise)
     learned = learn_relations(samples.q, samples.tau, noise=noise)
     document = relations_found(learned, samples, joints, limits)
+    document["robot_options"] = recorded_options(run)
     write_whole(run / "relations.json", text.dumps(plain(document), indent=1) + "\n")
     if candidates is not None:
         entries = [judged_entry(found) for found in judged]
-        document["candidates"] = {"source": candidates, "judged": entries}
+        document["candidates"] = {"source": candidates.spec, "judged": entries}
     if json:
         emit_json(document)
     else:
         _print_learned(learned, document)
         if candidates is not None:
-            _print_judged(judged, candidates)
+            _print_judged(judged, candidates.spec)
         say(f"written: {run / 'relations.json'}", quiet)
     return int(any(str(found.judgement) == "contradicted" for found in judged))
 

@@ -7,16 +7,15 @@ from isotorque.cli.options import (
     EncoderStep,
     Engine,
     Json,
-    NoSnap,
     Out,
     Physics,
     Quiet,
-    RobotName,
     Seed,
     Settle,
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, plain, say
+from isotorque.cli.robot_options import RobotName, takes_robot
 from isotorque.cli.run_options import (
     Confirm,
     LearnAnyway,
@@ -28,6 +27,7 @@ from isotorque.cli.run_options import (
 )
 
 
+@takes_robot()
 def run(
     robot: RobotName,
     out: Out,
@@ -42,7 +42,6 @@ def run(
     engine: Engine = "compiled",
     settle: Settle = "finished",
     seed: Seed = 0,
-    no_snap: NoSnap = False,
     angle_noise: AngleNoise = 0.0,
     torque_noise: TorqueNoise = 0.0,
     encoder_step: EncoderStep = 0.0,
@@ -65,9 +64,7 @@ def run(
     from learning.exploration.by_name import DIRECTIONS
     from verify.report import write_report
 
-    arm = ArmOptions(
-        seed, physics, engine, settle, not no_snap, angle_noise, torque_noise, encoder_step
-    )
+    arm = ArmOptions(seed, physics, engine, settle, angle_noise, torque_noise, encoder_step)
     learner = default_learner(DIRECTIONS) if learner is None else learner
     samples = default_samples(DIRECTIONS, learner) if samples is None else samples
     options = RunOptions(

@@ -11,18 +11,18 @@ from isotorque.cli.options import (
     EncoderStep,
     Engine,
     Json,
-    NoSnap,
     Physics,
     Quiet,
-    RobotName,
     Seed,
     Settle,
     TorqueNoise,
     numbers,
 )
 from isotorque.cli.output import emit_json, row
+from isotorque.cli.robot_options import RobotName, about, takes_robot
 
 
+@takes_robot()
 def simulate(
     robot: RobotName,
     torque: Annotated[
@@ -39,7 +39,6 @@ def simulate(
     engine: Engine = "compiled",
     settle: Settle = "finished",
     seed: Seed = 0,
-    no_snap: NoSnap = False,
     angle_noise: AngleNoise = 0.0,
     torque_noise: TorqueNoise = 0.0,
     encoder_step: EncoderStep = 0.0,
@@ -53,7 +52,7 @@ def simulate(
     from learning.simulation.simulated_arm import SimulatedArm
     from symbolic.robots import load_robot
 
-    loaded = load_robot(robot, snap=not no_snap)
+    loaded = load_robot(robot)
     tau = numbers(torque, "--torque", loaded.n)
     q0 = None if start is None else numbers(start, "--from", loaded.n)
     arm = SimulatedArm(
@@ -69,7 +68,7 @@ def simulate(
     if json:
         emit_json(
             {
-                "robot": loaded.name,
+                **about(loaded),
                 "physics": physics,
                 "engine": engine,
                 "outcome": str(outcome.kind),

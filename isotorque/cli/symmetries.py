@@ -7,10 +7,12 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, NoSnap, Quiet, RobotName
+from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, row
+from isotorque.cli.robot_options import RobotName, about, takes_robot
 
 
+@takes_robot()
 def symmetries(
     robot: RobotName,
     tolerance: Annotated[
@@ -21,7 +23,6 @@ def symmetries(
             help="Torque error [N m] that a relation may have; 0: exact symmetries only.",
         ),
     ] = 0.0,
-    no_snap: NoSnap = False,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -32,7 +33,7 @@ def symmetries(
     from symbolic.symmetries import primary_symmetries
     from verify.relation_files import relations_document
 
-    loaded = load_robot(robot, snap=not no_snap)
+    loaded = load_robot(robot)
     start = time.perf_counter()
     gravity = GravityModel(loaded)
     group = primary_symmetries(gravity.potential, tolerance)
@@ -42,7 +43,7 @@ def symmetries(
         for s in loaded.snaps
     ]
     document = relations_document(group, gravity.joint_names) | {
-        "robot": loaded.name,
+        **about(loaded),
         "tolerance": tolerance,
         **({"complete": True} if tolerance == 0 else {}),
         "snapped": snapped,

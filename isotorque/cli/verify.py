@@ -7,10 +7,13 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, NoSnap, Quiet
+from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json
+from isotorque.cli.robot_options import about, named, takes_robot
+from symbolic.robot_options import RobotOptions
 
 
+@takes_robot()
 def verify(
     what: Annotated[
         Path,
@@ -21,7 +24,14 @@ def verify(
         ),
     ],
     robot: Annotated[
-        str, typer.Option("--robot", metavar="ROBOT", help="Robot it is about.", show_default=False)
+        RobotOptions,
+        typer.Option(
+            "--robot",
+            parser=named,
+            metavar="ROBOT",
+            help="Robot it is about; options of it that are not given are as recorded.",
+            show_default=False,
+        ),
     ],
     tolerance: Annotated[
         float | None,
@@ -37,16 +47,16 @@ def verify(
         Path | None,
         typer.Option("--report", metavar="FILE.html", help="Write a report.", show_default=False),
     ] = None,
-    no_snap: NoSnap = False,
     json: Json = False,
     quiet: Quiet = False,
 ) -> int:
     """Judge what was learned or claimed: proof, bound, or a counterexample."""
+    from isotorque.runs.recorded_robot import as_recorded
     from isotorque.verification import verify_path
     from symbolic.gravity import GravityModel
     from symbolic.robots import load_robot
 
-    loaded = load_robot(robot, snap=not no_snap)
+    loaded = load_robot(as_recorded(robot, what))
     gravity = GravityModel(loaded)
     verdicts = verify_path(what, loaded, gravity, tolerance)
     passed = all(verdict.passed for verdict in verdicts)
@@ -56,7 +66,13 @@ def verify(
 
         write_whole(report, verdicts_page(f"{what.name} against {gravity.name}", verdicts))
     if json:
-        emit_json({"passed": passed, "verdicts": [verdict.to_json() for verdict in verdicts]})
+        emit_json(
+            {
+                **about(loaded),
+                "passed": passed,
+                "verdicts": [verdict.to_json() for verdict in verdicts],
+            }
+        )
     else:
         for verdict in verdicts:
             print(verdict)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from isotorque.runs.experiment import Progress
 from isotorque.runs.lattice_learning import fitted_with_curve
 from isotorque.runs.learned_model import LearnedModel
 from isotorque.runs.learning_curve import DenseTest
+from isotorque.runs.recorded_robot import as_recorded
 from isotorque.runs.robot_copy import keep_robot_file
 from isotorque.runs.run_options import check_symmetries
 from isotorque.runs.stages import DATABASE
@@ -28,6 +29,7 @@ from learning.recordings.recording import Recording
 from learning.recordings.run_info import RunInfo
 from learning.relations.broken_symmetries import SupportedGroup
 from symbolic.gravity import GravityModel
+from symbolic.robot_options import RobotOptions
 from symbolic.robots import Robot, load_robot
 from verify.measured_torques import Disagreement, disagreement
 
@@ -46,8 +48,8 @@ class DataOptions:
 
     Attributes
     ----------
-    robot : str
-        Built-in name or file of the arm; the data are judged against it.
+    robot : RobotOptions
+        Built-in name or file of the arm; the data are judged against it. A name alone will do.
     file : Path
         The CSV file, see ``learning.recordings.csv_data.read_csv``.
     learner : str or None
@@ -58,19 +60,17 @@ class DataOptions:
         Whether the model leaves out rows that do not fit the others.
     seed : int
         Seed of all random choices.
-    snap : bool
-        Whether rounded angles in the robot file are snapped.
     """
 
-    robot: str
+    robot: RobotOptions
     file: Path
     learner: str | None = None
     symmetries: str = "learned"
     drop_outliers: bool = False
     seed: int = 0
-    snap: bool = True
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "robot", RobotOptions.of(self.robot))
         check_symmetries(self.symmetries)
         if self.learner is not None:
             check_learner(self.learner)
@@ -78,7 +78,7 @@ class DataOptions:
     def task(self, samples: StaticSamples) -> LearningTask:
         """Return what learners are told beforehand."""
         rows, joints = samples.q.shape
-        return LearningTask(joints, rows, True, self.robot, self.snap, self.seed)
+        return LearningTask(joints, rows, True, self.robot, self.seed)
 
 
 @single_thread()
@@ -106,7 +106,8 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
         For a file, robot or options that cannot be used, and for a directory that holds samples of
         another file.
     """
-    robot = load_robot(options.robot, snap=options.snap)
+    robot = load_robot(as_recorded(options.robot, out))
+    options = replace(options, robot=robot.options)
     samples = read_csv(options.file, robot.joint_names)
     gravity = GravityModel(robot)
     _record(robot, samples, output_directory(out))
@@ -157,9 +158,11 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
 
 
 def _record(robot: Robot, samples: StaticSamples, out: Path) -> None:
+    part = robot.options.as_json()
     info = RunInfo(
-        robot.name, robot.digest, robot.joint_names, "measured", "elsewhere", part="data"
-    )
+        robot.name, robot.digest, robot.joint_names, "measured", "elsewhere",
+        options={"robot": part} if part else {}, part="data",
+    )  # fmt: skip
     with Recording.open_or_create(out / DATABASE, info) as recording:
         record_samples(recording, samples)
         recording.finish()

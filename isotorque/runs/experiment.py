@@ -117,7 +117,7 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
         For a robot or options that cannot be used, and for a directory that holds another run.
     """
     made_with = options.discovering
-    robot = load_robot(options.robot, snap=made_with.snap)
+    robot = load_robot(options.robot)
     clock: dict[str, float] = {}
     with _timed(clock, "derivation"):
         gravity = GravityModel(robot)
@@ -216,6 +216,9 @@ def save_run_model(result: RunOutcome, out: Path) -> Path:
 
 def save_learner(learner: Any, robot: Robot, notes: dict[str, Any], out: Path) -> Path:
     """Write a learner of a robot to ``out``; return the path of its JSON."""
+    part = robot.options.as_json()
+    if part:
+        notes = notes | {"robot_options": part}
     saved = SavedModel(learner, robot.name, robot.digest, robot.joint_names, notes)
     return save_model(saved, out)
 

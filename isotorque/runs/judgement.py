@@ -96,11 +96,19 @@ def judge_run(run: RunOutcome) -> RunReport:
 
 def _setup(run: RunOutcome) -> RunSetup:
     options = run.options
-    command = ["isotorque", "run", options.robot, "--out", "DIR", "--seed", str(options.arm.seed)]
+    command = [
+        "isotorque",
+        "run",
+        options.robot.spec,
+        "--out",
+        "DIR",
+        "--seed",
+        str(options.arm.seed),
+    ]
     command += ["--samples", str(options.samples), "--learner", options.learner]
     command += ["--symmetries", options.symmetries, "--n-min", str(options.n_min)]
     command += ["--physics", options.arm.physics, "--engine", options.arm.engine]
-    command += ["--settle", options.arm.settle] + ([] if options.arm.snap else ["--no-snap"])
+    command += ["--settle", options.arm.settle, *options.robot.arguments()]
     for option, value in (
         ("--confirm", options.confirm),
         ("--angle-noise", options.arm.angle_noise),

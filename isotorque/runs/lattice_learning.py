@@ -72,7 +72,7 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
         robot, gravity, group = found.robot, found.gravity, found.scheme.group
         remarks = missing_symmetries(found)
     else:
-        robot = load_robot(options.robot, snap=options.arm.snap)
+        robot = load_robot(options.robot)
         gravity = GravityModel(robot)
         exact = options.symmetries == "exact"
         group = primary_symmetries(gravity.potential) if exact else None

@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from isotorque.runs.recorded_robot import as_recorded
 from isotorque.runs.run_options import (
     LATTICE,
     ArmOptions,
@@ -16,10 +17,11 @@ from isotorque.runs.run_options import (
 )
 from isotorque.runs.stages import recorded_discovery
 from learning.physics import PhysicsMode
+from symbolic.robot_options import RobotOptions
 
 
 def learn_options(
-    robot: str,
+    robot: str | RobotOptions,
     out: Path | None,
     strategy: str,
     symmetries: str,
@@ -47,6 +49,9 @@ def learn_options(
     InputError
         For options that make no sense.
     """
+    robot = RobotOptions.of(robot)
+    if out is not None:  # one robot in one run: the recording refuses another one
+        robot = as_recorded(robot, out)
     learner = default_learner(strategy) if learner is None else learner
     samples = default_samples(strategy, learner) if samples is None else samples
     asked = {f.name: given[f.name] for f in fields(ArmOptions) if f.name in given}
@@ -61,8 +66,6 @@ def learn_options(
     else:
         discovery, n_min, confirm = recorded
         arm = replace(discovery, **asked)
-        # one robot in one run: the recording refuses another one
-        discovery = replace(discovery, snap=arm.snap)
     n_min, confirm = given.get("n_min", n_min), given.get("confirm", confirm)
     anyway = bool(given.get("learn_anyway", False))
     return RunOptions(

@@ -65,6 +65,7 @@ class LearnedModel:
         """Judge the model, saved at a path; return all there is to tell, for JSON."""
         return {
             "robot": self.robot.name,
+            "robot_options": self.robot.options.as_json(),
             **self.choices,
             "samples": self.samples,
             "discovery_motions": self.discovery_motions,

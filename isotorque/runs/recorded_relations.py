@@ -10,6 +10,7 @@ from typing import Any
 
 from isotorque.files import write_whole
 from isotorque.runs.experiment import RunOutcome
+from isotorque.runs.recorded_robot import as_recorded
 from isotorque.runs.robot_copy import recorded_robot
 from isotorque.runs.stages import DATABASE
 from learning.recordings.recording_reader import RecordingReader, SettledSamples
@@ -18,19 +19,24 @@ from learning.relations.executable import is_executable
 from learning.relations.learned_symmetries import LearnedSymmetries
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryRelation
+from symbolic.robot_options import RobotOptions
 from symbolic.robots import load_robot
 from symbolic.symmetries import primary_symmetries
 from verify.relation_files import load_relations, relations_document
 
 
 def claimed_relations(
-    source: str, run: Path, reader: RecordingReader
+    robot: RobotOptions, run: Path, reader: RecordingReader
 ) -> tuple[SymmetryRelation, ...]:
-    """Relations to test: those of a file, or those that the geometry of a robot implies."""
-    if source.endswith(".json"):
-        return load_relations(source, joint_names=reader.joint_names).relations
-    robot = recorded_robot(run, reader) if source == "exact" else load_robot(source)
-    return tuple(primary_symmetries(GravityModel(robot).potential))
+    """Relations to test: those of a file, or those that the geometry of a robot implies.
+
+    Options of the robot that are not given are as recorded.
+    """
+    if robot.spec.endswith(".json"):
+        return load_relations(robot.spec, joint_names=reader.joint_names).relations
+    exact = robot.spec == "exact" and not robot.changed
+    loaded = recorded_robot(run, reader) if exact else load_robot(as_recorded(robot, run))
+    return tuple(primary_symmetries(GravityModel(loaded).potential))
 
 
 def recorded_limits(reader: RecordingReader) -> list[list[float]] | None:
@@ -104,6 +110,7 @@ def save_relations(run: RunOutcome, out: Path, plain: Callable[[Any], Any]) -> P
             document = relations_found(learned, samples, names, recorded_limits(reader))
     else:
         return None
+    document["robot_options"] = run.robot.options.as_json()
     path = out / "relations.json"
     write_whole(path, json.dumps(plain(document), indent=1) + "\n")
     return path

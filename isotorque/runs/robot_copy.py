@@ -5,14 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 from isotorque.files import write_whole
+from isotorque.runs.recorded_robot import as_recorded
 from learning.recordings.recording_reader import RecordingReader
 from symbolic.errors import InputError
-from symbolic.robots import Robot, builtin_robots, load_robot
+from symbolic.robot_options import RobotOptions
+from symbolic.robots import Robot, builtin_robots, load_robot, robot_file
 
 ROBOT_FILE = "robot.urdf"
 
 
-def keep_robot_file(spec: str, out: Path) -> None:
+def keep_robot_file(robot: RobotOptions, out: Path) -> None:
     """Copy the file that a robot was loaded from; a built-in robot needs none.
 
     Raises
@@ -20,10 +22,8 @@ def keep_robot_file(spec: str, out: Path) -> None:
     InputError
         If it cannot be written.
     """
-    path = Path(spec)
-    if spec in {robot.name for robot in builtin_robots()} or not path.is_file():
-        return
-    write_whole(out / ROBOT_FILE, path.read_bytes())
+    if robot.spec not in {builtin.name for builtin in builtin_robots()}:
+        write_whole(out / ROBOT_FILE, robot_file(robot.spec))
 
 
 def recorded_robot(run: Path, reader: RecordingReader) -> Robot:
@@ -38,9 +38,9 @@ def recorded_robot(run: Path, reader: RecordingReader) -> Robot:
     accepted = f"the file of the robot recorded (digest {reader.digest[:12]})"
     if not kept.is_file() and reader.robot not in {robot.name for robot in builtin_robots()}:
         raise InputError(kept, "file", "missing", f"{accepted}; or --candidates with that file")
-    for snap in (True, False):  # as the run was made
-        robot = load_robot(kept if kept.is_file() else reader.robot, snap=snap)
-        if robot.digest == reader.digest:
-            return robot
+    spec = str(kept) if kept.is_file() else reader.robot
+    robot = load_robot(as_recorded(RobotOptions(spec), run))
+    if robot.digest == reader.digest:
+        return robot
     found = f"{robot.name} (digest {robot.digest[:12]})"
     raise InputError(kept if kept.is_file() else run, "robot", found, accepted)

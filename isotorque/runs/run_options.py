@@ -9,6 +9,7 @@ from learning.exploration.by_name import DIRECTIONS, EXPLORATIONS
 from learning.learners.by_name import BATCH_LEARNERS, LEADER, LearningTask, check_learner
 from learning.physics import PhysicsMode, SettleMode
 from symbolic.errors import InputError
+from symbolic.robot_options import RobotOptions
 
 LATTICE = "lattice"
 STRATEGIES = (*EXPLORATIONS, LATTICE)
@@ -43,8 +44,6 @@ class ArmOptions:
         Seed of all random choices.
     physics, engine, settle : str
         Of the simulation.
-    snap : bool
-        Whether rounded angles in the robot file are snapped.
     angle_noise, torque_noise, encoder_step : float
         Errors of the sensors: standard deviations [rad], [N m], and the step that angles are
         rounded to [rad].
@@ -54,7 +53,6 @@ class ArmOptions:
     physics: str = "open_loop"
     engine: str = "compiled"
     settle: str = "finished"
-    snap: bool = True
     angle_noise: float = 0.0
     torque_noise: float = 0.0
     encoder_step: float = 0.0
@@ -77,8 +75,8 @@ class RunOptions:
 
     Attributes
     ----------
-    robot : str
-        Built-in name or file.
+    robot : RobotOptions
+        Built-in name or file, and which part of it is meant; a name alone will do.
     arm : ArmOptions
         The simulated arm.
     n_min : int
@@ -101,7 +99,7 @@ class RunOptions:
         Torque error that the model is judged with [N m]; None: `default_tolerance`.
     """
 
-    robot: str
+    robot: RobotOptions
     arm: ArmOptions = field(default_factory=ArmOptions)
     n_min: int = 2
     samples: int = 3000
@@ -114,6 +112,7 @@ class RunOptions:
     tolerance: float | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "robot", RobotOptions.of(self.robot))
         check_symmetries(self.symmetries)
         if not 1 <= self.samples <= MOST_SAMPLES:
             raise InputError("run", "--samples", self.samples, f"1 to {MOST_SAMPLES}")
@@ -152,7 +151,6 @@ class RunOptions:
             self.samples,
             not self.arm.is_exact,
             self.robot,
-            self.arm.snap,
             self.arm.seed,
         )
 

@@ -13,6 +13,7 @@ from learning.physics import MeasurementNoise, PhysicsMode
 from learning.recordings.recording_reader import RecordingReader
 from learning.recordings.run_info import RunInfo
 from learning.simulation.simulated_arm import SimulatedArm
+from symbolic.robot_options import RobotOptions
 from symbolic.robots import Robot
 
 DATABASE = "run.sqlite"
@@ -53,9 +54,17 @@ def run_info(
         options.physics,
         options.engine,
         options.seed,
-        {**more, "made_with": asdict(options), "arm": arm.settings.as_json()},
+        {**more, **robot_facts(robot.options, options), "arm": arm.settings.as_json()},
         part,
     )
+
+
+def robot_facts(robot: RobotOptions, options: ArmOptions) -> dict[str, Any]:
+    """Return what a recording says of robot and arm, the robot's name and digest apart."""
+    part = robot.as_json()
+    made_with = asdict(options) | {"snap": part.pop("snap", True)}
+    # recordings of whole robots stay as they were before there were parts
+    return {"made_with": made_with} | ({"robot": part} if part else {})
 
 
 def recorded_discovery(out: Path) -> tuple[ArmOptions, int, int] | None:

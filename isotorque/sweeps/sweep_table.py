@@ -9,6 +9,7 @@ import itertools
 import json
 import math
 import re
+import shlex
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
@@ -20,7 +21,8 @@ from isotorque.runs.learn_options import learn_options
 from isotorque.runs.run_options import LATTICE, ArmOptions, RunOptions, default_samples
 from learning.exploration.by_name import DIRECTIONS
 from symbolic.errors import InputError
-from symbolic.robots import load_robot
+from symbolic.robot_options import RobotOptions
+from symbolic.robots import STANDARD_INPUT, load_robot
 
 SAMPLES = 1000
 """Torques commanded in a run where the table does not say."""
@@ -38,11 +40,17 @@ READERS: dict[str, Callable[[Any], Any]] = {
 WANTED = {
     "str": "a name", "int": "a whole number", "float": "a number", "bool": "true or false"
 }  # fmt: skip
+ROBOT_OPTIONS: dict[str, str] = {
+    f.name: "bool" if f.type == "bool" else "str" for f in fields(RobotOptions) if f.name != "spec"
+}
+"""Options of a robot, written as on the command line."""
+SEVERAL = ("lock", "payload")
+"""Options that may be given several times: with spaces between, quoted as in a shell."""
 OPTIONS: dict[str, str] = {
     f.name: str(f.type)
     for f in (*fields(RunOptions), *fields(ArmOptions))
     if f.type in READERS and f.name not in (*REQUIRED, "learn_anyway")
-}
+} | ROBOT_OPTIONS
 """What a table may say beside the required columns, each with its type: as options of `learn`.
 A sweep measures: it always learns, and tells whether the gate was passed."""
 
@@ -77,7 +85,13 @@ class SweepRun:
 
     def option(self, name: str) -> Any:
         """Return one of `OPTIONS`."""
-        return getattr(self.options if hasattr(self.options, name) else self.options.arm, name)
+        options = self.options
+        if name in ROBOT_OPTIONS:
+            value = options.robot.as_json().get(name, getattr(options.robot, name))
+            if name in SEVERAL:
+                return shlex.join(value)
+            return ",".join(map(str, value)) if isinstance(value, list) else value
+        return getattr(options if hasattr(options, name) else options.arm, name)
 
     @property
     def name(self) -> str:
@@ -87,7 +101,7 @@ class SweepRun:
         options = self.options
         name = f"{stem}-{tail}-{self.learner}-{options.symmetries}-{options.samples}-{self.seed}"
         usual = RunOptions(
-            self.robot, ArmOptions(self.seed), learner=self.learner,
+            RobotOptions(self.robot), ArmOptions(self.seed), learner=self.learner,
             symmetries=options.symmetries, samples=options.samples,
         )  # fmt: skip
         if options == usual:
@@ -231,11 +245,12 @@ def _run(where: str, given: Mapping[str, Any]) -> SweepRun:
     strategy = given.get("strategy", DIRECTIONS)
     usual = default_samples(strategy, learner) if strategy == LATTICE else SAMPLES
     try:
+        part = _robot(robot, given)
         options = learn_options(
-            robot, None, strategy, given.get("symmetries", "learned"), learner,
+            part, None, strategy, given.get("symmetries", "learned"), learner,
             given.get("samples", usual), given,
         )  # fmt: skip
-        digest = _digest(robot, options.arm.snap)
+        digest = _digest(part)
     except InputError as error:
         raise InputError(
             where, error.field, f"{error.value} ({error.where})", error.accepted
@@ -244,8 +259,19 @@ def _run(where: str, given: Mapping[str, Any]) -> SweepRun:
 
 
 @lru_cache(maxsize=64)
-def _digest(robot: str, snap: bool) -> str:
-    return load_robot(robot, snap=snap).digest
+def _digest(robot: RobotOptions) -> str:
+    return load_robot(robot).digest
+
+
+def _robot(spec: str, given: Mapping[str, Any]) -> RobotOptions:
+    """Return the robot of a run; where several entries of one option may stand, they are split."""
+    if spec == STANDARD_INPUT:
+        raise InputError(spec, "robot", "standard input", "a built-in name or a file")
+    options = {name: given[name] for name in ROBOT_OPTIONS if name in given}
+    for name in SEVERAL:
+        if name in options:
+            options[name] = shlex.split(options[name])
+    return RobotOptions(spec, **options)
 
 
 def told_options(runs: Sequence[SweepRun]) -> list[str]:

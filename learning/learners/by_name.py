@@ -8,6 +8,7 @@ from typing import Any
 
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryGroup
+from symbolic.robot_options import RobotOptions
 
 FEW, SOME = 18, 30
 """Hidden units of a network, as in the paper: for two joints or few samples, and otherwise."""
@@ -26,10 +27,8 @@ class LearningTask:
         Number of samples to come; 0 where it is not known.
     noisy : bool
         Whether the samples have errors that must not be learned.
-    robot : str or None
+    robot : RobotOptions, str or None
         Built-in name or file of the arm, for ``parametric``, which is told the kinematics.
-    snap : bool
-        Whether rounded angles in the robot file are snapped.
     seed : int
         Seed of random starts.
     """
@@ -37,8 +36,7 @@ class LearningTask:
     joints: int = 0
     samples: int = 0
     noisy: bool = False
-    robot: str | None = None
-    snap: bool = True
+    robot: RobotOptions | str | None = None
     seed: int = 0
 
 
@@ -98,7 +96,7 @@ def _parametric(group: SymmetryGroup | None, task: LearningTask) -> Any:
     from learning.learners.static_regressor import StaticRegressor
 
     # the kinematics implies the relations; copies by measured ones would add their errors
-    return StaticRegressor(task.robot, snap=task.snap, group=None if task.noisy else group)
+    return StaticRegressor(task.robot, group=None if task.noisy else group)
 
 
 ONLINE_LEARNERS: dict[str, Factory] = {

@@ -16,7 +16,8 @@ from learning.learners.saved_learner import SavedLearner
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
-from symbolic.robots import Robot, load_robot
+from symbolic.robot_options import RobotOptions
+from symbolic.robots import STANDARD_INPUT, Robot, load_robot
 
 Array = NDArray[np.float64]
 
@@ -26,11 +27,12 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
 
     Parameters
     ----------
-    robot : Robot, str or None
-        The arm, a built-in name or a file; its masses are not looked at, only its kinematics and
-        gravity. A model can be saved only if it was given as a name or file.
+    robot : Robot, RobotOptions, str or None
+        The arm, a built-in name or a file, with options if wanted; its masses are not looked at,
+        only its kinematics and gravity. A model can be saved only if it was given as a name or
+        file.
     snap : bool
-        Whether rounded angles in the file are snapped.
+        Whether rounded angles are snapped in a file that is given by its name alone.
     ridge : float
         Penalty on the squares of the parameters (mass [kg], first moments [kg m]); 0: least
         squares, the smallest parameters where the samples leave some open (most always are:
@@ -74,7 +76,7 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
 
     def __init__(
         self,
-        robot: Robot | str | None = None,
+        robot: Robot | RobotOptions | str | None = None,
         *,
         snap: bool = True,
         ridge: float = 0.0,
@@ -149,18 +151,40 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         return result
 
     def _arrays(self) -> dict[str, NDArray]:
-        if not isinstance(self.robot, str):
-            raise InputError(
-                "StaticRegressor", "robot", "a loaded one", "a name or file, to be saved"
-            )
+        found = "a loaded one" if isinstance(self.robot, Robot) else None
+        if getattr(self.robot, "spec", self.robot) == STANDARD_INPUT:
+            found = "standard input"
+        if found is not None:
+            raise InputError("StaticRegressor", "robot", found, "a name or file, to be saved")
         return {"parameters": self.parameters_.copy()}
+
+    def parameters(self) -> dict[str, Any]:
+        """Settings and counters as plain data; the options of the robot as in a recording."""
+        saved = super().parameters()
+        robot = self.robot
+        if isinstance(robot, RobotOptions):
+            saved["settings"] |= {"robot": robot.spec}
+            if robot.changed:
+                saved["settings"] |= {"robot": [robot.spec, robot.as_json()]}
+        return saved
+
+    @classmethod
+    def from_arrays(
+        cls, arrays: Mapping[str, NDArray], parameters: Mapping[str, Any]
+    ) -> StaticRegressor:
+        """The learner that was saved."""
+        settings = dict(parameters["settings"])
+        if isinstance(settings.get("robot"), list):
+            spec, options = settings["robot"]
+            settings["robot"] = RobotOptions.from_json(spec, options, "saved model")
+        return super().from_arrays(arrays, {**parameters, "settings": settings})
 
     def _counters(self) -> dict[str, Any]:
         return {"rank": int(self.rank_), "kinematics": self._kinematics}
 
     def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
         if state["kinematics"] != self._kinematics:
-            name = getattr(self.robot, "name", self.robot)
+            name = getattr(self.robot, "name", str(self.robot))
             raise InputError(
                 "saved model", "robot", f"{name}, of other kinematics", "the arm it was fitted to"
             )
@@ -174,7 +198,8 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         """Empty state for ``joints`` inputs and ``outputs`` outputs."""
         robot = self.robot
         if not isinstance(robot, Robot):
-            robot = load_robot(robot, snap=self.snap)
+            named = isinstance(robot, RobotOptions)
+            robot = load_robot(robot if named else RobotOptions(str(robot), self.snap))
         for field, number in (("X", joints), ("y", outputs)):
             if number != robot.n:
                 raise InputError(field, "number of columns", number, f"{robot.n}, as the robot")

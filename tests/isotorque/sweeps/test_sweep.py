@@ -10,8 +10,10 @@ from isotorque.cli.main import status
 from isotorque.runs.run_options import ArmOptions, RunOptions
 from isotorque.sweeps import sweep as sweep_module
 from isotorque.sweeps.sweep import COLUMNS, sweep
-from isotorque.sweeps.sweep_table import OPTIONS, read_sweep
+from isotorque.sweeps.sweep_table import OPTIONS, read_sweep, told_options
 from symbolic.errors import InputError
+from symbolic.robot_options import RobotOptions
+from symbolic.robots import load_robot
 
 LEARNER = "recursive-least-squares"
 BOTH = f'robots = ["2r"]\nlearners = ["{LEARNER}"]\n'
@@ -199,3 +201,26 @@ def test_a_refused_robot_names_itself_and_the_others_go_on(tmp_path, capsys):
     with (tmp_path / "out" / "sweep.csv").open() as file:
         assert {row["robot"] for row in csv.DictReader(file)} == {"pendulum"}
     assert (tmp_path / "out" / "sweep.svg").exists()
+
+
+def test_a_robot_of_a_table_has_the_options_of_a_command(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text(
+        "robot,learner,seed,lock,payload,snap\n"
+        "3r,trigonometric,0,elbow=0.5 *roll,1.5,false\n"
+        "3r,trigonometric,0,,,\n"
+    )
+    part, whole = read_sweep(path)
+    wanted = RobotOptions("3r", snap=False, lock=["elbow=0.5", "*roll"], payload=1.5)
+    assert part.options.robot == wanted
+    assert whole.options.robot == RobotOptions("3r")
+    assert part.name != whole.name
+    assert part.digest == load_robot(wanted).digest != whole.digest
+    assert told_options([part, whole]) == ["snap", "lock", "payload"]
+    assert part.option("lock") == "elbow=0.5 '*roll'"
+    path.write_text("robot,learner,seed,lock\n3r,trigonometric,0,q9\n")
+    with pytest.raises(InputError, match="row 2: --lock"):
+        read_sweep(path)
+    path.write_text("robot,learner,seed\n-,trigonometric,0\n")
+    with pytest.raises(InputError, match="row 2: robot is standard input"):
+        read_sweep(path)
