@@ -251,7 +251,8 @@ class Scheme:
                 self.static_torques.add(visited_torques(known.fit, trajectory))
 
     def _confirm(self) -> Iterator[Discovery]:
-        """Command the torques that say most about the relations (active confirmation)."""
+        """Command the torques that say most about the relations; ask the gate again."""
+        orders: list[int] = []
         for _ in range(self.settings.confirm):
             q, _ = self.samples
             wanted = None if self.learned is None else next_torque(self.learned, q, self.rng)
@@ -261,6 +262,13 @@ class Scheme:
             self._take(outcome)
             yield Discovery(None, outcome, None, outcome.kind is OutcomeKind.SETTLED)
             self.learned = learn_relations(*self.samples)
+            orders.append(self.learned.order)
+        if self.learned is not None and orders:  # they may confirm, or contradict
+            order, missing = self.learned.order, self.learned.missing
+            unchanged = len(orders) >= self.settings.confirmations and set(orders) == {order}
+            confirmed = unchanged or bool(self.gates and self.gates[-1].passed)
+            passed = missing is None and order >= self.settings.n_min and confirmed
+            self.gates.append(GateDecision(len(self.targets), order, passed, missing))
 
     def _gate(self) -> bool:
         """Learn the relations from all settled samples; say whether they suffice."""
