@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from symbolic.errors import InputError
 from symbolic.exact_symmetries import exact_symmetries, specialised
 from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
 from symbolic.residuals import residual_bound
@@ -41,6 +42,11 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
         at most ``tolerance`` in any torque; ``relation.bound`` is proved for each joint. Sorted
         by order, then by the distance of the symmetric potential. None contains another.
 
+    Raises
+    ------
+    InputError
+        If the tolerance is not a positive number.
+
     Notes
     -----
     For a closed candidate group with offsets fitted jointly, the nearest symmetric potential is
@@ -61,6 +67,8 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
     >>> print(maximal_groups(U, 0.05)[0][1].bound.max() <= 0.05)
     True
     """
+    if not (np.isfinite(tolerance) and tolerance > 0):
+        raise InputError("symmetries", "tolerance", tolerance, "a number > 0 [N m]")
     numeric = specialised(potential)
     order = np.argsort(-numeric.amplitudes(), kind="stable")
     numeric = TrigonometricPolynomial(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -286,6 +287,47 @@ class SymmetryGroup(Sequence[SymmetryRelation]):
     def level_set_symmetries(self) -> SymmetryGroup:
         """Return the subgroup with Y = I: same torque, not only the same up to signs."""
         return SymmetryGroup(r for r in self.listed() if np.all(r.Y == 1))
+
+
+def group_structure(group: SymmetryGroup) -> str:
+    """Return in words how a group is a direct product of those of blocks of joints.
+
+    Examples
+    --------
+    >>> from symbolic.symmetries import primary_symmetries
+    >>> from symbolic.trigonometric import TrigonometricPolynomial
+    >>> legs = TrigonometricPolynomial(np.eye(3, dtype=int), [0.0] * 3, [1.0, 1.0, 2.0])
+    >>> group_structure(primary_symmetries(legs))
+    '64 = 4^3: 3 blocks of 4'
+    """
+    count = Counter(factor.order for factor in group.direct_factors)
+    orders = sorted(order for order in count if order > 1)
+    if not orders:
+        return "1"
+    powers = " x ".join(_power(order, count[order]) for order in orders)
+    blocks = ", ".join(
+        f"{count[order]} block{'s' if count[order] > 1 else ''} of {order}" for order in orders
+    )
+    return f"{group.order} = {powers}: {blocks}" if powers != str(group.order) else powers
+
+
+def _power(order: int, exponent: int) -> str:
+    return str(order) if exponent == 1 else f"{order}^{exponent}"
+
+
+def factor_structure(factor: DirectFactor) -> str:
+    """Return the order of a factor, as a product where it is known to be one.
+
+    Examples
+    --------
+    >>> factor_structure(DirectFactor((0, 1), 8, (2, 2, 2)))
+    '8 = 2^3'
+    """
+    count = Counter(factor.factors)
+    if len(factor.factors) < 2:
+        return str(factor.order)
+    powers = " x ".join(_power(order, count[order]) for order in sorted(count, reverse=True))
+    return f"{factor.order} = {powers}"
 
 
 def _keys(Y: Array, A_sat: Array, whole: bool) -> list[bytes]:

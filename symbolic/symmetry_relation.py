@@ -204,14 +204,30 @@ class SymmetryRelation:
             and bool(np.all(np.abs(wrap(self.d_sat)) <= SAME_ANGLE))
         )
 
+    def line(self, joint: int) -> str:
+        """Return in words what becomes of one joint, e.g. ``q2' = 2 q1 + 1 q2``."""
+        terms = (f"{x:+g} q{j + 1}" for j, x in enumerate(self.A[joint]) if x)
+        row = " ".join(terms) or "0"
+        shift = f" {self.d[joint]:+.6g}" if abs(self.d[joint]) > 1e-12 else ""
+        return f"q{joint + 1}' = {row.removeprefix('+')}{shift}"
+
     def __str__(self) -> str:
-        lines = []
-        for i in range(self.n):
-            row = " ".join(f"{x:+g} q{j + 1}" for j, x in enumerate(self.A[i]) if x) or "0"
-            shift = f" {self.d[i]:+.6g}" if abs(self.d[i]) > 1e-12 else ""
-            lines.append(f"q{i + 1}' = {row.removeprefix('+')}{shift}")
         signs = ", ".join(f"{int(y):+d}" for y in self.Y)
-        return f"{'; '.join(lines)}; Y = diag({signs})"
+        return f"{'; '.join(self.line(i) for i in range(self.n))}; Y = diag({signs})"
+
+    def in_short(self) -> str:
+        """Return in words what the relation changes, nothing of what it leaves alone.
+
+        Examples
+        --------
+        >>> SymmetryRelation([[1, 0, 0], [0, -1, 0], [0, 0, 1]], [0, 0.5, 0], [1, -1, 1]).in_short()
+        "q2' = -1 q2 +0.5; Y_2 = -1"
+        """
+        moved = np.any(np.eye(self.n) != self.A, axis=1) | (np.abs(self.d) > 1e-12)
+        lines = [self.line(int(i)) for i in np.flatnonzero(moved)]
+        signs = [f"Y_{i + 1}" for i in np.flatnonzero(self.Y < 0)]
+        lines += [" = ".join([*signs, "-1"])] if signs else []
+        return "; ".join(lines) or "the identity"
 
 
 def identity(n: int, basis: ArrayLike | None = None) -> SymmetryRelation:

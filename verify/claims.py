@@ -6,7 +6,7 @@ import numpy as np
 
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryGroup, SymmetryRelation
+from symbolic.relations import LARGEST_LIST, SymmetryGroup, SymmetryRelation, close
 from symbolic.symmetries import primary_symmetries
 from verify.relation_files import RelationsFile
 from verify.relations import describe_relation, verify_relation, verify_relations
@@ -60,7 +60,12 @@ def verify_relations_file(
     if any(np.isfinite(relation.bound).any() for relation in file):
         verdicts.append(_bounds(file, gravity))
     exact = all(verdict.status is Status.PROVED for verdict in verdicts[: len(file)])
-    if file.complete:
+    if file.generate:
+        if file.complete or (file.order is not None and exact):
+            verdicts.append(_generation(file, gravity))
+        elif file.order is not None:
+            verdicts.append(_closure(file))
+    elif file.complete:
         verdicts.append(_completeness(file, gravity))
     elif file.order is not None and exact:
         whole = _completeness(file, gravity)
@@ -116,11 +121,43 @@ def _completeness(file: RelationsFile, gravity: GravityModel) -> Verdict:
     return Verdict(claim, Status.PROVED if whole else Status.REFUTED, np.nan)
 
 
+def _generation(file: RelationsFile, gravity: GravityModel) -> Verdict:
+    """Judge whether the relations generate the complete group, of the order claimed."""
+    group = primary_symmetries(gravity.potential)
+    free = ~np.any(gravity.potential.frequencies != 0, axis=0)
+    given = [
+        SymmetryRelation(r.A, r.d, np.where(free, 1.0, r.Y), group.basis) for r in file.relations
+    ]
+    claim = f"the {len(file)} relations listed generate all that there are ({group.order})"
+    numbers = {number for number in map(group.find, given) if number is not None}
+    whole = len(numbers) == len(file) and file.order in (None, group.order)
+    if whole and not {group.find(generator) for generator in group.generators} <= numbers:
+        if group.order > LARGEST_LIST:
+            accepted = f"those that are written for groups of more than {LARGEST_LIST} relations"
+            raise InputError(file.source, "generators", f"{len(file)} others", accepted)
+        whole = _generated(group, numbers) == group.order
+    return Verdict(claim, Status.PROVED if whole else Status.REFUTED, np.nan)
+
+
+def _generated(group: SymmetryGroup, numbers: set[int]) -> int:
+    """Return how many relations of a group some of them generate."""
+    reached, fresh = {0}, [0]
+    while fresh:
+        products = {group.index(group[g] @ group[x]) for x in fresh for g in numbers}
+        fresh = sorted(products - reached)
+        reached |= products
+    return len(reached)
+
+
 def _closure(file: RelationsFile, there_are: int | None = None) -> Verdict:
     known = "" if there_are is None else f" (of the {there_are} that there are)"
     claim = f"the {len(file)} relations listed{known} form a group"
     try:
-        closed = SymmetryGroup(file.relations).is_closed
-    except InputError:  # a matrix that does not map y = B q to itself
+        if file.generate:
+            claim = f"the {len(file)} relations listed generate a group of order {file.order}"
+            closed = close(file.relations, LARGEST_LIST).order == file.order
+        else:
+            closed = SymmetryGroup(file.relations).is_closed
+    except InputError:  # a matrix that does not map y = B q to itself, or offsets never come back
         closed = False
     return Verdict(claim, Status.TESTED if closed else Status.REFUTED, np.nan)

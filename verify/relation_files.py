@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symbolic.errors import InputError
-from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
+from symbolic.relations import SymmetryGroup, SymmetryRelation, group_structure, wrap
 from verify.checked_json import Field, read_json
 
 Array = NDArray[np.float64]
@@ -35,9 +35,11 @@ class RelationsFile:
     joint_names : tuple of str or None
         The file's ``joints``.
     order : int or None
-        The claimed order of the group they form; always the number of relations.
+        The claimed order of the group they form or generate.
     complete : bool
         Whether the file claims that no exact relation is missing.
+    generate : bool
+        Whether the relations are generators, not all members.
     """
 
     source: str
@@ -45,6 +47,7 @@ class RelationsFile:
     joint_names: tuple[str, ...] | None = None
     order: int | None = None
     complete: bool = False
+    generate: bool = False
 
     def __iter__(self) -> Iterator[SymmetryRelation]:
         return iter(self.relations)
@@ -65,7 +68,8 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     ----------
     path
         A JSON file: an object with ``relations``, a list of objects that hold at least ``A``,
-        ``d`` and ``Y``, or that list alone.
+        ``d`` and ``Y``, or that list alone; or an object with ``generators``, such a list of
+        relations that generate a large group.
     joint_names
         The robot's joints; a file that names others, or the same in another order, is refused.
 
@@ -99,7 +103,8 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     root = (
         document if document.is_object else Field(document.where, "", {"relations": document.value})
     )
-    entries = root.entry("relations").items(at_least=1)
+    generate = root.optional("relations") is None and root.optional("generators") is not None
+    entries = root.entry("generators" if generate else "relations").items(at_least=1)
     names = _joint_names(root, joint_names)
     n = len(names) if names is not None else None
     first = entries[0].entry("A").items(at_least=1)
@@ -107,14 +112,15 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     basis = root.optional("basis")
     B = None if basis is None else _basis(basis, n)
     relations = tuple(_relation(entry, n, B) for entry in entries)
-    _check_group_entries(root, relations, B, n)
+    _check_group_entries(root, relations, B, n, generate)
     order, complete = root.optional("order"), root.optional("complete")
     return RelationsFile(
         source=document.where,
         relations=relations,
         joint_names=names,
-        order=None if order is None else len(relations),
+        order=None if order is None else order.integer(),
         complete=complete is not None and complete.boolean(),
+        generate=generate,
     )
 
 
@@ -123,6 +129,7 @@ def relations_document(
     joint_names: Sequence[str],
     *,
     extra: Sequence[dict[str, Any]] | None = None,
+    generators: bool = False,
 ) -> dict[str, Any]:
     """Return relations in the form of a relations file.
 
@@ -134,6 +141,8 @@ def relations_document(
         Joint names in the order of q.
     extra
         More entries for each relation, e.g. how it was learned; must not repeat the standard ones.
+    generators
+        Write generators of a group under ``generators``, in place of all its ``relations``.
 
     Returns
     -------
@@ -147,16 +156,30 @@ def relations_document(
     >>> document["order"], document["relations"][0]["M"]
     (1, [[-1]])
     """
-    members = list(relations.listed() if isinstance(relations, SymmetryGroup) else relations)
-    basis = members[0].basis
+    if not isinstance(relations, SymmetryGroup):
+        members = list(relations)
+    else:
+        members = list(relations.generators if generators else relations.listed())
+    basis = relations.basis if isinstance(relations, SymmetryGroup) else members[0].basis
     document: dict[str, Any] = {"joints": list(joint_names)}
     if isinstance(relations, SymmetryGroup):
         document["order"] = relations.order
     document |= {"rank": len(basis), "basis": _plain(basis)}
     if isinstance(relations, SymmetryGroup):
         document["free_directions"] = _plain(relations.free_directions)
+        document["structure"] = {
+            "text": group_structure(relations),
+            "factors": [
+                {
+                    "joints": [joint_names[j] for j in factor.joints],
+                    "order": factor.order,
+                    "factors": list(factor.factors),
+                }
+                for factor in relations.direct_factors
+            ],
+        }
     additions = [{} for _ in members] if extra is None else extra
-    document["relations"] = [
+    document["generators" if generators else "relations"] = [
         {
             "A": _plain(relation.A),
             "d": relation.d.tolist(),
@@ -271,9 +294,13 @@ def _check_group_entries(
     relations: tuple[SymmetryRelation, ...],
     basis: NDArray[np.int64] | None,
     n: int,
+    generate: bool,
 ) -> None:
     order, rank = root.optional("order"), root.optional("rank")
-    if order is not None and order.integer() != len(relations):
+    if generate:
+        if order is not None and order.integer() < 2:
+            order.refuse("the order of a group with generators, at least 2")
+    elif order is not None and order.integer() != len(relations):
         order.refuse(f"the number of relations listed, {len(relations)}")
     r = n if basis is None else len(basis)
     if rank is not None and (rank.integer() != r if basis is not None else rank.integer() > n):

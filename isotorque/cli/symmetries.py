@@ -11,6 +11,9 @@ from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, row
 from isotorque.cli.robot_options import RobotName, about, takes_robot
 
+LISTED = 64
+"""Groups of at most this order are listed without being asked."""
+
 
 @takes_robot()
 def symmetries(
@@ -23,12 +26,20 @@ def symmetries(
             help="Torque error [N m] that a relation may have; 0: exact symmetries only.",
         ),
     ] = 0.0,
+    all_: Annotated[
+        bool,
+        typer.Option(
+            "--all",
+            help="List every relation, of groups of up to 4096; else generators beyond 64.",
+        ),
+    ] = False,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
     """Derive every map q -> A q + d under which gravity torques only change signs."""
     from symbolic.approximate_symmetries import maximal_groups
     from symbolic.gravity import GravityModel
+    from symbolic.relations import factor_structure, group_structure
     from symbolic.robots import load_robot
     from symbolic.symmetries import primary_symmetries
     from verify.relation_files import relations_document
@@ -36,13 +47,16 @@ def symmetries(
     loaded = load_robot(robot)
     start = time.perf_counter()
     gravity = GravityModel(loaded)
-    group = primary_symmetries(gravity.potential, tolerance)
+    maximal = maximal_groups(gravity.potential, tolerance) if tolerance > 0 else []
+    group = maximal[0] if maximal else primary_symmetries(gravity.potential, tolerance)
+    generators = group.order > LISTED and not all_
+    document = relations_document(group, gravity.joint_names, generators=generators)
     seconds = time.perf_counter() - start
     snapped = [
         {"joint": s.joint, "what": s.what, "before": s.before, "after": s.after, "effect": s.effect}
         for s in loaded.snaps
     ]
-    document = relations_document(group, gravity.joint_names) | {
+    document |= {
         **about(loaded),
         "tolerance": tolerance,
         **({"complete": True} if tolerance == 0 else {}),
@@ -52,8 +66,7 @@ def symmetries(
         "seconds": seconds,
     }
     if tolerance > 0:
-        others = maximal_groups(gravity.potential, tolerance)
-        document["maximal_orders"] = [g.order for g in others]
+        document["maximal_orders"] = [g.order for g in maximal]
     if json:
         emit_json(document)
         return
@@ -64,8 +77,16 @@ def symmetries(
         print(f"  snapped: {snap.joint}: {snap.what} {snap.before} -> {snap.after}")
     for direction in group.free_directions:
         print(f"  free direction: {row(direction)}")
-    for relation in group:
+    if group.order > LISTED:
+        print(f"  structure: {group_structure(group)}")
+        for factor in group.direct_factors:
+            if factor.order > 1:
+                names = ", ".join(gravity.joint_names[j] for j in factor.joints)
+                print(f"    {factor_structure(factor)}: {names}")
+    if generators:
+        print(f"  {len(group.generators)} generators; q' = q and Y = +1 where nothing is said:")
+    for relation in group.generators if generators else group:
         known = "proved" if relation.exact else f"error at most {relation.bound.max():.3g} N m"
-        print(f"  {relation}  [{known}]")
+        print(f"  {relation.in_short() if generators else relation}  [{known}]")
     if tolerance > 0 and len(document["maximal_orders"]) > 1:
         print(f"  orders of all maximal groups: {document['maximal_orders']}")
