@@ -37,9 +37,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "float": lambda value: _unfit() if isinstance(value, bool) else float(value),
     "bool": lambda value: {True: True, False: False, "true": True, "false": False}[value],
 }
-WANTED = {
-    "str": "a name", "int": "a whole number", "float": "a number", "bool": "true or false"
-}  # fmt: skip
+WANTED = {"str": "a name", "int": "a whole number", "float": "a number", "bool": "true or false"}
 ROBOT_OPTIONS: dict[str, str] = {
     f.name: "bool" if f.type == "bool" else "str" for f in fields(RobotOptions) if f.name != "spec"
 }
@@ -101,9 +99,12 @@ class SweepRun:
         options = self.options
         name = f"{stem}-{tail}-{self.learner}-{options.symmetries}-{options.samples}-{self.seed}"
         usual = RunOptions(
-            RobotOptions(self.robot), ArmOptions(self.seed), learner=self.learner,
-            symmetries=options.symmetries, samples=options.samples,
-        )  # fmt: skip
+            RobotOptions(self.robot),
+            ArmOptions(self.seed),
+            learner=self.learner,
+            symmetries=options.symmetries,
+            samples=options.samples,
+        )
         if options == usual:
             return name
         text = json.dumps(asdict(options), sort_keys=True)
@@ -247,9 +248,14 @@ def _run(where: str, given: Mapping[str, Any]) -> SweepRun:
     try:
         part = _robot(robot, given)
         options = learn_options(
-            part, None, strategy, given.get("symmetries", "learned"), learner,
-            given.get("samples", usual), given,
-        )  # fmt: skip
+            part,
+            None,
+            strategy,
+            given.get("symmetries", "learned"),
+            learner,
+            given.get("samples", usual),
+            given,
+        )
         digest = _digest(part)
     except InputError as error:
         raise InputError(

@@ -21,9 +21,27 @@ ROBOTS = {
     for name in ("pendulum", "2r")
 }
 NUMBERS = [
-    "0", "-0.0", "1", "-1", "1e-300", "-1e-320", "1e300", "-1e300", "1e16", "nan", "inf", "-inf",
-    "", "x", "1_0", "1e-9", "3.14159", "0x10", "٣", "9" * 400,
-]  # fmt: skip
+    "0",
+    "-0.0",
+    "1",
+    "-1",
+    "1e-300",
+    "-1e-320",
+    "1e300",
+    "-1e300",
+    "1e16",
+    "nan",
+    "inf",
+    "-inf",
+    "",
+    "x",
+    "1_0",
+    "1e-9",
+    "3.14159",
+    "0x10",
+    "٣",
+    "9" * 400,
+]
 WORDS = ["", " ", "a\nb", "\u202e", "\x00", "None", "2r", "[red]x[/red]", "%s", "é" * 300, "\ud800"]
 
 
@@ -64,13 +82,18 @@ def mutated(draw, text, tokens):
 
 
 LEAVES = st.one_of(
-    st.none(), st.booleans(), st.integers(-3, 3), st.sampled_from([2**63, -(10**30), 10**400]),
-    st.sampled_from([0.0, 1e-320, 1e300, -1e300, 0.5]), st.sampled_from(WORDS[:-1]),
-)  # fmt: skip
+    st.none(),
+    st.booleans(),
+    st.integers(-3, 3),
+    st.sampled_from([2**63, -(10**30), 10**400]),
+    st.sampled_from([0.0, 1e-320, 1e300, -1e300, 0.5]),
+    st.sampled_from(WORDS[:-1]),
+)
 TREES = st.recursive(
-    LEAVES, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=3), inner),
+    LEAVES,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=3), inner),
     max_leaves=5,
-)  # fmt: skip
+)
 
 
 def spots(document, path=()):
@@ -136,15 +159,37 @@ def test_recordings(answer, tmp_path_factory, data):
     text = "q1,q2,tau1,tau2\n" + "".join(",".join(row) + "\n" for row in cells)
     (folder / "arm.csv").write_text(text)
     learner = data.draw(st.sampled_from(["recursive-least-squares", "parametric", "trigonometric"]))
-    answer("learn", "2r", "--data", folder / "arm.csv", "--out", folder / "out", "--quiet",
-           "--learner", learner)  # fmt: skip
+    answer(
+        "learn",
+        "2r",
+        "--data",
+        folder / "arm.csv",
+        "--out",
+        folder / "out",
+        "--quiet",
+        "--learner",
+        learner,
+    )
 
 
 CLAIM = {
-    "joints": ["shoulder", "elbow"], "order": 1, "rank": 2, "basis": [[1, 0], [1, 1]],
-    "relations": [{"A": [[-1, 0], [2, 1]], "d": [0.0, 0.0], "Y": [1, 1], "M": [[1, 0], [-1, -1]],
-                   "N": [[1, 0], [1, 1]], "rhs": [0.0, 0.0], "exact": True, "bound": [0.0, 0.0]}],
-}  # fmt: skip
+    "joints": ["shoulder", "elbow"],
+    "order": 1,
+    "rank": 2,
+    "basis": [[1, 0], [1, 1]],
+    "relations": [
+        {
+            "A": [[-1, 0], [2, 1]],
+            "d": [0.0, 0.0],
+            "Y": [1, 1],
+            "M": [[1, 0], [-1, -1]],
+            "N": [[1, 0], [1, 1]],
+            "rhs": [0.0, 0.0],
+            "exact": True,
+            "bound": [0.0, 0.0],
+        }
+    ],
+}
 
 
 @given(st.data())

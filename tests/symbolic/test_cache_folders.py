@@ -49,9 +49,14 @@ def as_somebody(installation, code, **places):
     environment |= {"HOME": "/proc/nowhere", "TMPDIR": str(temporary)}
     environment |= {"PYTHONPATH": str(installation), "PYTHONDONTWRITEBYTECODE": "1", **places}
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=temporary, env=environment, capture_output=True,
-        text=True, check=False, preexec_fn=obey_permissions,
-    )  # fmt: skip
+        [sys.executable, "-c", code],
+        cwd=temporary,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=obey_permissions,
+    )
     made = sorted(str(p.relative_to(temporary)) for p in temporary.rglob("*"))
     shutil.rmtree(temporary)
     return done, made
@@ -106,9 +111,20 @@ def test_the_folder_that_the_user_names_is_taken(installation):
 
 @pytest.mark.slow
 def test_commands_work_in_silence(installation):
-    for command in (["simulate", "2r", "--torque", "5,1"],
-                    ["run", "pendulum", "--out", "out", "--samples", "20", "--quiet",
-                     "--learner", "recursive-least-squares"]):  # fmt: skip
+    for command in (
+        ["simulate", "2r", "--torque", "5,1"],
+        [
+            "run",
+            "pendulum",
+            "--out",
+            "out",
+            "--samples",
+            "20",
+            "--quiet",
+            "--learner",
+            "recursive-least-squares",
+        ],
+    ):
         code = f"from isotorque.cli.main import run; run({command!r})"
         done, _ = as_somebody(installation, code)
         assert (done.returncode, done.stderr) == (0, ""), command

@@ -32,8 +32,11 @@ def test_a_toml_table_is_every_combination(tmp_path):
     text = f'robots = ["2r", "pendulum"]\nlearners = ["{LEARNER}"]\nseeds = [3, 7]\nsamples = 50\n'
     runs = read_sweep(table(tmp_path / "t.toml", text))
     assert [(r.robot, r.seed, r.options.samples) for r in runs] == [
-        ("2r", 3, 50), ("2r", 7, 50), ("pendulum", 3, 50), ("pendulum", 7, 50),
-    ]  # fmt: skip
+        ("2r", 3, 50),
+        ("2r", 7, 50),
+        ("pendulum", 3, 50),
+        ("pendulum", 7, 50),
+    ]
     assert {r.options.symmetries for r in runs} == {"learned"}
 
 
@@ -41,8 +44,11 @@ def test_a_number_of_seeds_counts_from_zero(tmp_path):
     text = f'robots = ["2r"]\nlearners = ["{LEARNER}"]\nsymmetries = ["none", "exact"]\nseeds = 2\n'
     runs = read_sweep(table(tmp_path / "t.toml", text))
     assert [(r.options.symmetries, r.seed) for r in runs] == [
-        ("none", 0), ("none", 1), ("exact", 0), ("exact", 1),
-    ]  # fmt: skip
+        ("none", 0),
+        ("none", 1),
+        ("exact", 0),
+        ("exact", 1),
+    ]
 
 
 def test_a_csv_table_is_one_run_per_line_each_once(tmp_path):
@@ -50,8 +56,9 @@ def test_a_csv_table_is_one_run_per_line_each_once(tmp_path):
     text = f"robot,learner,seed,samples\n{once}\npendulum, network ,2,\n{once}"
     runs = read_sweep(table(tmp_path / "t.csv", text))
     assert [(r.robot, r.learner, r.seed, r.options.samples) for r in runs] == [
-        ("2r", LEARNER, 1, 40), ("pendulum", "network", 2, 1000),
-    ]  # fmt: skip
+        ("2r", LEARNER, 1, 40),
+        ("pendulum", "network", 2, 1000),
+    ]
     assert len({r.name for r in runs}) == 2
 
 
@@ -152,9 +159,11 @@ def test_strategies_and_other_options_are_columns(tmp_path):
     runs = read_sweep(table(tmp_path / "t.toml", text + "samples = 30\n"))
     told = [(r.options.strategy, r.options.arm.physics, r.options.arm.angle_noise) for r in runs]
     assert told == [
-        ("direction-sampling", "open_loop", 0.0), ("direction-sampling", "open_loop", 0.001),
-        ("lattice", "guided", 0.0), ("lattice", "guided", 0.001),
-    ]  # fmt: skip
+        ("direction-sampling", "open_loop", 0.0),
+        ("direction-sampling", "open_loop", 0.001),
+        ("lattice", "guided", 0.0),
+        ("lattice", "guided", 0.001),
+    ]
     assert len({r.name for r in runs}) == 4
     line = f"robot,learner,seed,strategy,samples,angle_noise\n2r,{LEARNER},0,lattice,30,0.001\n"
     assert read_sweep(table(tmp_path / "t.csv", line)) == runs[3:]
@@ -163,9 +172,14 @@ def test_strategies_and_other_options_are_columns(tmp_path):
 def test_all_options_of_a_run_are_columns():
     known = {f.name for kind in (RunOptions, ArmOptions) for f in fields(kind)}
     assert known - set(OPTIONS) == {
-        "robot", "learner", "seed", "arm", "discovery_arm",
-        "learn_anyway", "tolerance",  # a sweep always learns, and judges nothing
-    }  # fmt: skip
+        "robot",
+        "learner",
+        "seed",
+        "arm",
+        "discovery_arm",
+        "learn_anyway",
+        "tolerance",  # a sweep always learns, and judges nothing
+    }
 
 
 def test_a_lattice_is_learned_from(tmp_path, capsys):
