@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from learning.export.chain_recursion import ChainRecursion
 from learning.export.kernels import Kernels
 from learning.export.local_functions import LocalFunctions
 from learning.export.tanh_units import TanhUnits
@@ -21,7 +22,9 @@ from symbolic.errors import InputError
 
 SCHEMA = 1
 FORMAT = "isotorque export"
-FORMS: dict[str, Any] = {f.KIND: f for f in (Waves, TanhUnits, Kernels, LocalFunctions)}
+FORMS: dict[str, Any] = {
+    f.KIND: f for f in (Waves, TanhUnits, Kernels, LocalFunctions, ChainRecursion)
+}
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from learning.export.chain_recursion import ChainRecursion
 from learning.export.copies import Copies
 from learning.export.folded_copy import FoldedCopy
 from learning.export.kernels import Kernels
@@ -19,6 +20,8 @@ from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.local_linear_map import LocalLinearMap
 from learning.learners.network import FeedForwardNetwork
 from learning.learners.recursive_least_squares import RecursiveLeastSquares
+from learning.learners.rigid.canonical_form import CanonicalForm
+from learning.learners.rigid.rigid_chain import RigidChain
 from learning.learners.sample_checks import fitted
 from learning.learners.static_regressor import StaticRegressor
 from learning.learners.symmetric_kernel import distinct_rows
@@ -40,7 +43,7 @@ def torque_form(learner: Any) -> TorqueForm:
     Returns
     -------
     TorqueForm
-        `Waves`, `TanhUnits`, `Kernels` or `LocalFunctions`.
+        `Waves`, `TanhUnits`, `Kernels`, `LocalFunctions` or `ChainRecursion`.
 
     Raises
     ------
@@ -168,6 +171,14 @@ def _recursive_least_squares(learner: RecursiveLeastSquares) -> LocalFunctions:
     )
 
 
+def _rigid_chain(learner: RigidChain) -> ChainRecursion:
+    chain = learner.chain_
+    form = CanonicalForm.of(chain)
+    return ChainRecursion.of(
+        chain.parents, form.offsets, form.twists, form.levers, chain.gains, chain.offsets
+    )
+
+
 def _dictionary(learner: DictionaryLearner) -> TorqueForm:
     learner.predict(np.zeros((1, learner.n_features_in_)))  # fits anew where samples have come
     return torque_form(learner.regressor_)
@@ -180,6 +191,7 @@ CONVERSIONS: dict[type, Any] = {
     SymmetricGaussianProcess: _gaussian_process,
     LocalLinearMap: _local_linear_map,
     RecursiveLeastSquares: _recursive_least_squares,
+    RigidChain: _rigid_chain,
     DictionaryLearner: _dictionary,
 }
 """Learners that can be exported."""

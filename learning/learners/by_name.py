@@ -99,18 +99,26 @@ def _parametric(group: SymmetryGroup | None, task: LearningTask) -> Any:
     return StaticRegressor(task.robot, group=None if task.noisy else group)
 
 
+def _rigid_chain(group: SymmetryGroup | None, task: LearningTask) -> Any:
+    from learning.learners.rigid.rigid_chain import RigidChain
+
+    # no group: a chain has the symmetries of what it explains
+    return RigidChain(random_state=task.seed)
+
+
 ONLINE_LEARNERS: dict[str, Factory] = {
     "local-linear-map": _local_linear_map,
     "local-linear-map-it": _local_linear_map_it,
     "recursive-least-squares": _recursive_least_squares,
 }
-"""Learners that take samples one by one (``partial_fit``)."""
+"""Learners that take samples one by one (``partial_fit``) and estimate from the first one on."""
 
 BATCH_LEARNERS: dict[str, Factory] = {
     "trigonometric": _trigonometric,
     "gaussian-process": _gaussian_process,
     "network": _network,
     "parametric": _parametric,
+    "rigid-chain": _rigid_chain,
 }
 """Learners that are fitted to all samples at once (``fit``)."""
 
@@ -128,6 +136,7 @@ SAVED_LEARNERS = (
     "FeedForwardNetwork",
     "LocalLinearMap",
     "RecursiveLeastSquares",
+    "RigidChain",
     "StaticRegressor",
     "SymmetricGaussianProcess",
 )
@@ -164,6 +173,10 @@ def learner_class(name: str) -> Any:
             from learning.learners.recursive_least_squares import RecursiveLeastSquares
 
             return RecursiveLeastSquares
+        case "RigidChain":
+            from learning.learners.rigid.rigid_chain import RigidChain
+
+            return RigidChain
         case "StaticRegressor":
             from learning.learners.static_regressor import StaticRegressor
 
@@ -199,7 +212,8 @@ def learner_by_name(name: str, group: SymmetryGroup | None, task: LearningTask) 
         to convergence, wider kernels and replay. ``recursive-least-squares``: all parameters
         jointly, on an exactly equivariant basis. ``trigonometric``: the form of rigid gravity with
         unknown coefficients. ``gaussian-process``, ``network``: any smooth torque.
-        ``parametric``: masses and first moments of the arm of ``task.robot``.
+        ``parametric``: masses and first moments of the arm of ``task.robot``. ``rigid-chain``:
+        rigid links in series, geometry and masses unknown; needs no relations.
     group
         Relations to exploit; None: no symmetries.
     task

@@ -55,8 +55,10 @@ class SavedLearner(BaseEstimator, ABC):
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray], parameters: Mapping[str, Any]) -> Self:
         """The learner that was saved, ready to go on learning where it stopped."""
-        group = SavedGroup.from_arrays(arrays) if "group_basis" in arrays else None
-        learner = cls(**parameters["settings"], group=group)
+        settings = dict(parameters["settings"])
+        if "group_basis" in arrays:
+            settings["group"] = SavedGroup.from_arrays(arrays)
+        learner = cls(**settings)
         state = parameters["state"]
         learner._check_parameters()
         learner.n_features_in_ = state["joints"]

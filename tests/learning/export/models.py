@@ -7,6 +7,7 @@ from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.local_linear_map import LocalLinearMap
 from learning.learners.network import FeedForwardNetwork
 from learning.learners.recursive_least_squares import RecursiveLeastSquares
+from learning.learners.rigid.rigid_chain import RigidChain
 from learning.learners.static_regressor import StaticRegressor
 from learning.learners.trigonometric import EquivariantTrigonometric
 from symbolic.gravity import GravityModel
@@ -40,11 +41,12 @@ MAKERS = {
     "smooth gaussian-process": lambda robot, group: SymmetricGaussianProcess(group=group),
     "noisy gaussian-process": lambda robot, group: SymmetricGaussianProcess(None, group=group),
     "parametric": lambda robot, group: StaticRegressor(robot),
+    "rigid-chain": lambda robot, group: RigidChain(unknown_offsets=True),
     "dictionary": lambda robot, group: DictionaryLearner(
         EquivariantTrigonometric(group=group), budget=30, group=group
     ),
 }
-TIED = [name for name in MAKERS if name not in ("parametric",)]
+TIED = [name for name in MAKERS if name not in ("parametric", "rigid-chain")]
 
 
 def samples(robot, count, seed=0):

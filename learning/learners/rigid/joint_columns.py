@@ -1,0 +1,66 @@
+"""Torques at single joints that are linear in one unknown: offsets, and what else is added."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Shape(StrEnum):
+    """How the torque of a column depends on the angle of its joint."""
+
+    OFFSET = "offset"
+    """Constant: a zero error of the torque sensor. The unknown is in N m."""
+    SPRING = "spring"
+    """Proportional to the angle. The unknown is in N m/rad."""
+
+
+FEATURES: dict[Shape, Callable[[Array], Array]] = {
+    Shape.OFFSET: np.ones_like,
+    Shape.SPRING: lambda angle: angle,
+}
+
+
+@dataclass(frozen=True)
+class JointColumn:
+    """A torque ``x f(q_j)`` that one joint has beside the chain's, x unknown.
+
+    Attributes
+    ----------
+    joint : int
+        j, from 0.
+    shape : Shape
+        f.
+    """
+
+    joint: int
+    shape: Shape
+
+    def feature(self, q: Array) -> Array:
+        """F of the angles in configurations (m, n) [rad], shape (m,)."""
+        return np.asarray(FEATURES[self.shape](q[:, self.joint]))
+
+
+def offset_columns(joints: int) -> tuple[JointColumn, ...]:
+    """An unknown constant offset at every joint."""
+    return tuple(JointColumn(j, Shape.OFFSET) for j in range(joints))
+
+
+def features(columns: Sequence[JointColumn], q: Array) -> Array:
+    """Derivatives of all torques by the unknowns, shape (m, n, p), at q (m, n) [rad].
+
+    Examples
+    --------
+    >>> features(offset_columns(2), np.zeros((1, 2))).tolist()
+    [[[1.0, 0.0], [0.0, 1.0]]]
+    """
+    result = np.zeros((*q.shape, len(columns)))
+    for c, column in enumerate(columns):
+        result[:, column.joint, c] = column.feature(q)
+    return result

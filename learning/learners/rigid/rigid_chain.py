@@ -1,0 +1,331 @@
+"""The rigid chain as a learner: the whole torque map of an arm from a handful of poses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from sklearn.base import RegressorMixin
+
+from learning.learners.rigid.chain_fit import ChainFit, fit_at, fit_chain
+from learning.learners.rigid.chain_parameters import ChainParameters, checked_parents, serial
+from learning.learners.rigid.chain_samples import ChainSamples, noise_by_joint
+from learning.learners.rigid.chain_search import ChainModel
+from learning.learners.rigid.gains import GainGroup, gain_groups, with_fixed_scales
+from learning.learners.rigid.joint_columns import offset_columns
+from learning.learners.rigid.standard_errors import TorqueErrors
+from learning.learners.rigid.verdict import Verdict
+from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
+from learning.learners.saved_learner import SavedLearner
+from symbolic.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+class RigidChain(RegressorMixin, SavedLearner):
+    """The torque of an arm of rigid links, geometry and masses unknown.
+
+    Parameters
+    ----------
+    parents : sequence of int or None
+        Joint that carries each joint, -1 for the base; None: joints in series. It is told
+        nothing else of the robot.
+    torque_noise : float or sequence of float or None
+        Standard deviation of the torque error [N m], one for all joints or one each; None: not
+        known, samples may be exact; 0: samples are exact.
+    angle_noise : float or sequence of float
+        Standard deviation of the angle error [rad].
+    unknown_gains : bool
+        Whether torques are measured in units that differ from joint to joint (motor currents).
+    known_gains : sequence of (float or None) or None
+        With unknown gains: those that are known, None for the others. One of them fixes the
+        common factor of all joints that are coupled with it.
+    unknown_offsets : bool
+        Whether every torque sensor has an unknown constant error.
+    max_starts : int
+        Random starts of the search at most.
+    window : int
+        Latest samples that ``partial_fit`` keeps.
+    random_state : int
+        Seed of the random starts.
+
+    Attributes
+    ----------
+    verdict_ : Verdict
+        Whether the chain that was found may be used. Where not, ``remark_`` says what is missing
+        and ``predict`` refuses.
+    chain_ : ChainParameters
+        The chain.
+    fit_ : ChainFit
+        Everything about the fit.
+    gain_groups_ : tuple of GainGroup
+        Joints whose gains are known relative to each other.
+
+    Notes
+    -----
+    At most 4 n - 1 numbers describe the statics of n joints in series, and each pose gives n
+    equations: four to eight poses determine the torque everywhere, whatever n, the kinematics
+    unknown (docs/rigid-chain.md). The model contains rigid serial statics and nothing else: no
+    springs, no cables, no friction. Prefer it to ``EquivariantTrigonometric`` wherever links are
+    rigid. It needs no symmetries: it implies them.
+
+    Examples
+    --------
+    >>> q = np.array([[0.3, -1.0], [1.1, 0.4], [-2.0, 0.7], [0.2, 2.9]])
+    >>> def torque(q):
+    ...     lower = 6.13 * np.cos(q.sum(axis=1))
+    ...     return np.stack([18.39 * np.cos(q[:, 0]) + lower, lower], axis=1)
+    >>> arm = RigidChain().fit(q, torque(q))
+    >>> print(arm.verdict_)
+    explains all samples to rounding
+    >>> bool(np.abs(arm.predict(q + 1.0) - torque(q + 1.0)).max() < 1e-9)
+    True
+    >>> print(RigidChain().fit(q[:3], torque(q[:3])).remark_)
+    1 more poses: 3 different ones were given, 4 are needed
+    """
+
+    _errors: TorqueErrors | None
+    group: None = None  # symmetries follow from the chain; there is nothing to be told
+
+    def __init__(
+        self,
+        parents: Sequence[int] | None = None,
+        *,
+        torque_noise: float | Sequence[float] | None = None,
+        angle_noise: float | Sequence[float] = 0.0,
+        unknown_gains: bool = False,
+        known_gains: Sequence[float | None] | None = None,
+        unknown_offsets: bool = False,
+        max_starts: int = 300,
+        window: int = 1000,
+        random_state: int = 0,
+    ) -> None:
+        self.parents = parents
+        self.torque_noise = torque_noise
+        self.angle_noise = angle_noise
+        self.unknown_gains = unknown_gains
+        self.known_gains = known_gains
+        self.unknown_offsets = unknown_offsets
+        self.max_starts = max_starts
+        self.window = window
+        self.random_state = random_state
+
+    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> RigidChain:
+        """Fit to samples, forgetting what was before.
+
+        Parameters
+        ----------
+        X : (m, n) array_like
+            Configurations [rad].
+        y : (m, n) array_like
+            Torques that hold them [N m].
+        sample_weight : (m,) array_like, optional
+            Weights of the squared errors.
+
+        Returns
+        -------
+        RigidChain
+            Itself; ``verdict_`` says whether it may be used.
+
+        Raises
+        ------
+        InputError
+            If a number is NaN or infinite, a parameter of the learner is unusable, or there is
+            not one torque per joint.
+        """
+        self._check_parameters()
+        q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
+        self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
+        return self._learn(self._samples(q, torque, weights), None)
+
+    def partial_fit(self, X: Any, y: Any, sample_weight: Any = None) -> RigidChain:
+        """Learn further samples, starting from the chain found before.
+
+        Beyond ``window`` samples the oldest are forgotten.
+        """
+        if not hasattr(self, "fit_"):
+            return self.fit(X, y, sample_weight)
+        q, torque, weights = checked_samples(self, X, y, sample_weight, first=False)
+        old, seen = self.fit_.samples, self.n_samples_seen_
+        both = self._samples(
+            np.concatenate([old.q, q]),
+            np.concatenate([old.torque, torque]),
+            np.concatenate([old.weights, weights]),
+        )
+        self._learn(both.part(slice(-self.window, None)), self.fit_.chain)
+        self.n_samples_seen_ = seen + len(q)
+        return self
+
+    def predict(self, X: Any) -> Array:
+        """Measured torques (m, n) [N m] estimated for configurations (m, n) [rad].
+
+        Raises
+        ------
+        InputError
+            If no chain was accepted.
+        """
+        q = self._asked(X)
+        result = self.chain_.torque(q)
+        return result[:, 0] if self._flat else result
+
+    def standard_error(self, X: Any) -> Array:
+        """Standard errors of `predict`, (m, n) [N m]; inf where samples leave torques open."""
+        return self.errors_.standard_error(self._asked(X))
+
+    def jacobian(self, X: Any) -> Array:
+        """Estimated stiffness d torque / d q, (m, n, n) [N m / rad]."""
+        return self.chain_.stiffness(self._asked(X))
+
+    @property
+    def verdict_(self) -> Verdict:
+        """Whether the chain may be used, and why."""
+        fitted(self)
+        return self.fit_.verdict
+
+    @property
+    def remark_(self) -> str:
+        """What is missing or speaks against the chain; empty where it is accepted."""
+        fitted(self)
+        return self.fit_.remark
+
+    @property
+    def chain_(self) -> ChainParameters:
+        """The chain that was found.
+
+        Raises
+        ------
+        InputError
+            If it was not accepted.
+        """
+        fitted(self)
+        if not self.fit_.verdict.accepted:
+            raise InputError(
+                "rigid chain",
+                "fit",
+                f"not accepted: {self.fit_.verdict}",
+                self.fit_.remark or "samples of a rigid arm",
+            )
+        return self.fit_.chain
+
+    @property
+    def errors_(self) -> TorqueErrors:
+        """Standard errors; repeated experiments are kept from one call to the next."""
+        fitted(self)
+        if self._errors is None:
+            self._errors = TorqueErrors(self.fit_, self.random_state)
+        return self._errors
+
+    def _asked(self, X: Any) -> Array:
+        fitted(self)
+        return checked_configurations(self, X, first=False)
+
+    def _samples(self, q: Array, torque: Array, weights: Array) -> ChainSamples:
+        n, used = q.shape[1], weights > 0
+        stated = 0.0 if self.torque_noise is None else self.torque_noise
+        return ChainSamples(
+            q[used],
+            torque[used],
+            noise_by_joint("RigidChain", "torque_noise", stated, n),
+            noise_by_joint("RigidChain", "angle_noise", self.angle_noise, n),
+            weights[used],
+        )
+
+    def _learn(self, samples: ChainSamples, warm: ChainParameters | None) -> RigidChain:
+        if not len(samples.q):
+            raise InputError("sample_weight", "every weight", "zero", "at least one number > 0")
+        fit = fit_chain(
+            samples,
+            self._model,
+            np.random.default_rng(self.random_state),
+            noise_known=self.torque_noise is not None,
+            starts=self.max_starts,
+            warm=warm,
+        )
+        self.gain_groups_: tuple[GainGroup, ...] = ()
+        if fit.verdict.accepted:
+            self.gain_groups_ = gain_groups(fit)
+            fit = with_fixed_scales(fit, self.gain_groups_)
+        self._take(fit)
+        self.n_samples_seen_ = len(samples.q)
+        return self
+
+    def _take(self, fit: ChainFit) -> None:
+        self.fit_, self._errors = fit, None
+
+    def parameters(self) -> dict[str, Any]:
+        """Settings and counters as plain numbers (JSON)."""
+        found = super().parameters()
+        settings = found["settings"].items()
+        plain = {k: v if v is None or np.isscalar(v) else list(v) for k, v in settings}
+        return {"settings": plain, "state": found["state"]}
+
+    def _counters(self) -> dict[str, Any]:
+        fit = self.fit_
+        return {
+            "verdict": fit.verdict.name,
+            "starts": fit.starts,
+            "p_value": None if np.isnan(fit.p_value) else fit.p_value,
+            "held_out": None if np.isnan(fit.held_out) else fit.held_out,
+            "groups": [[list(g.joints), g.scale_known] for g in self.gain_groups_],
+        }
+
+    def _arrays(self) -> dict[str, NDArray]:
+        chain, samples = self.chain_, self.fit_.samples
+        return {
+            **chain.to_arrays(),
+            "q": samples.q,
+            "torque": samples.torque,
+            "torque_errors": samples.torque_noise,
+            "weights": samples.weights,
+            "free_gains": self.fit_.model.free_gains,
+        }
+
+    def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
+        chain = ChainParameters.from_arrays(arrays)
+        samples = self._samples(arrays["q"], arrays["torque"], arrays["weights"])
+        samples = samples.with_torque_noise(arrays["torque_errors"])
+        free = arrays["free_gains"] > 0.5
+        model = replace(self._model, free_gains=free, gains=chain.gains)
+        more = {
+            k: float("nan") if state[k] is None else float(state[k])
+            for k in ("p_value", "held_out")
+        }
+        verdict = Verdict[state["verdict"]]
+        self._take(
+            fit_at(
+                chain, samples, model, self._model.free_gains, verdict, int(state["starts"]), **more
+            )
+        )
+        self.gain_groups_ = tuple(GainGroup(tuple(j), bool(k)) for j, k in state["groups"])
+
+    def _check_parameters(self) -> None:
+        starts, window = self.max_starts, self.window
+        require(self, "max_starts", starts == int(starts) and starts >= 1, "a whole number >= 1")
+        require(self, "window", window == int(window) and window >= 1, "a whole number >= 1")
+        alone = self.known_gains is None or self.unknown_gains
+        require(self, "known_gains", alone, "None unless unknown_gains is True")
+
+    def _start(self, joints: int, outputs: int, flat: bool) -> None:
+        """Empty state for ``joints`` inputs and ``outputs`` outputs."""
+        if outputs != joints:
+            raise InputError("y", "number of columns", outputs, f"{joints}, one torque per joint")
+        parents = serial(joints) if self.parents is None else checked_parents(self.parents, joints)
+        known: Sequence[float | None] = [None] * joints
+        if self.known_gains is not None:
+            known = self.known_gains
+            good = len(known) == joints and all(
+                k is None or (np.isfinite(k) and k != 0) for k in known
+            )
+            require(self, "known_gains", good, f"{joints} numbers other than 0, or None")
+        self._model = ChainModel(
+            parents,
+            np.array([1.0 if k is None else k for k in known], dtype=float),
+            np.array([self.unknown_gains and k is None for k in known], dtype=bool),
+            offset_columns(joints) if self.unknown_offsets else (),
+        )
+        self._flat = flat
+        self.n_outputs_ = outputs
+        self.n_samples_seen_ = 0

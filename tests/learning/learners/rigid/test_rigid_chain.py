@@ -1,0 +1,184 @@
+"""The learner: scikit-learn's manners, saved and loaded, warm starts, calibrated errors."""
+
+import inspect
+import json
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from sklearn.base import clone
+
+from learning.learners.rigid.rigid_chain import RigidChain
+from learning.learners.rigid.verdict import Verdict
+from learning.model_files import SavedModel, load_model, save_model
+from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
+from symbolic.robots import load_robot
+from tests.learning.learners.rigid.random_chains import random_poses
+
+NAMES = tuple("abcdefg")
+
+
+def measured(name, poses, seed, noise=0.0):
+    gravity = GravityModel(load_robot(name))
+    rng = np.random.default_rng(seed)
+    q = random_poses(rng, poses, gravity.n)
+    return gravity, q, gravity.torque(q) + noise * rng.normal(size=q.shape)
+
+
+def test_it_knows_nothing_of_the_robot():
+    """Told n and nothing else: no robot in its settings, none reachable by its imports."""
+    assert not {"robot", "tree", "urdf"} & set(inspect.signature(RigidChain).parameters)
+    script = (
+        "import sys, learning.learners.rigid.rigid_chain as _; "
+        "print([m for m in sys.modules if m in ('pinocchio', 'casadi', 'symbolic.robots', "
+        "'symbolic.gravity', 'symbolic.kinematic_tree')])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True)
+    assert done.stdout.decode().strip() == "[]"
+
+
+def test_what_is_not_accepted_is_neither_predicted_nor_saved(tmp_path):
+    _, q, torque = measured("panda", 3, 0)
+    learner = RigidChain(max_starts=10).fit(q, torque)
+    assert learner.verdict_ is Verdict.TOO_FEW
+    for use in (learner.predict, learner.jacobian):
+        with pytest.raises(InputError, match=r"not accepted.*more poses"):
+            use(q)
+    with pytest.raises(InputError, match="not accepted"):
+        save_model(SavedModel(learner, "panda", "", NAMES, {}), tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {},
+        {"torque_noise": 0.05},
+        {"torque_noise": [0.05] * 6, "angle_noise": 1e-4},
+        {"torque_noise": np.full(6, 0.05), "unknown_gains": True, "unknown_offsets": True},
+        {"unknown_gains": True, "known_gains": [None, 2.0, None, None, None, None]},
+    ],
+)
+def test_saved_models_are_the_same_to_the_last_bit(settings, tmp_path):
+    _, q, torque = measured("ur5", 25, 1, 0.05)
+    learner = RigidChain(**settings).fit(q, torque)
+    save_model(SavedModel(learner, "ur5", "", NAMES[:6], {}), tmp_path)
+    back = load_model(tmp_path).learner
+    asked = random_poses(np.random.default_rng(2), 5, 6)
+    np.testing.assert_array_equal(back.predict(asked), learner.predict(asked))
+    np.testing.assert_allclose(back.standard_error(asked), learner.standard_error(asked), rtol=1e-3)
+    assert back.verdict_ == learner.verdict_
+    assert back.gain_groups_ == learner.gain_groups_
+    json.dumps(learner.parameters())
+    more, more_torque = measured("ur5", 5, 3, 0.05)[1:]
+    for twin in (learner, back, pickle.loads(pickle.dumps(learner))):
+        twin.partial_fit(more, more_torque)
+        assert twin.n_samples_seen_ == 30
+    np.testing.assert_allclose(back.predict(asked), learner.predict(asked), atol=1e-4)
+
+
+def test_more_samples_are_learned_from_the_last_chain():
+    gravity, q, torque = measured("panda", 40, 4, 0.05)
+    learner = RigidChain(torque_noise=0.05, window=30).fit(q[:10], torque[:10])
+    for k in range(10, 40):
+        learner.partial_fit(q[k : k + 1], torque[k : k + 1])
+        assert learner.verdict_.accepted
+        assert learner.fit_.starts == 0  # the last solution was good enough
+    assert len(learner.fit_.samples.q) == 30
+    test = random_poses(np.random.default_rng(5), 200, 7)
+    error = np.sqrt(np.mean((learner.predict(test) - gravity.torque(test)) ** 2))
+    assert error < 0.05
+
+
+@pytest.mark.parametrize(("name", "poses"), [("2r", 10), ("ur5", 20), ("panda", 20)])
+def test_standard_errors_are_calibrated(name, poses):
+    inside, within_three = [], []
+    for seed in range(25):
+        gravity, q, torque = measured(name, poses, seed, 0.05)
+        learner = RigidChain(torque_noise=0.05).fit(q, torque)
+        asked = random_poses(np.random.default_rng(99), 60, gravity.n)
+        truth = gravity.torque(asked)
+        loaded = np.abs(truth).max(axis=0) > 1e-9
+        z = np.abs(learner.predict(asked) - truth) / learner.standard_error(asked)
+        inside.append(np.mean(z[:, loaded] < 1.645))
+        within_three.append(np.mean(z[:, loaded] < 3.0))
+    assert 0.82 < np.mean(inside) < 0.96
+    assert np.mean(within_three) > 0.98
+
+
+def test_gains_are_known_relative_to_each_other():
+    gravity, q, torque = measured("panda", 30, 6)
+    gains = np.array([3.0, 0.5, 1.5, 0.8, 1.2, 2.0, 0.7])
+    learner = RigidChain(unknown_gains=True).fit(q, gains * torque)
+    (group,) = [g for g in learner.gain_groups_ if len(g.joints) > 1]
+    assert not group.scale_known
+    joints = list(group.joints)
+    ratio = learner.chain_.gains[joints] / gains[joints]
+    assert np.ptp(ratio) < 1e-9
+    # one known gain fixes the common factor
+    known = [None] * 7
+    known[3] = 0.8
+    fixed = RigidChain(unknown_gains=True, known_gains=known).fit(q, gains * torque)
+    np.testing.assert_allclose(fixed.chain_.gains[joints], gains[joints], rtol=1e-8)
+    assert any(g.scale_known for g in fixed.gain_groups_)
+    true = fixed.chain_.true_chain().torque(q)
+    np.testing.assert_allclose(true[:, 1:], gravity.torque(q)[:, 1:], atol=1e-7)
+
+
+def test_a_sign_is_a_gain():
+    gravity, q, torque = measured("panda", 30, 6)
+    torque[:, 3] *= -1.0
+    learner = RigidChain(unknown_gains=True).fit(q, torque)
+    test = random_poses(np.random.default_rng(1), 50, 7)
+    expected = gravity.torque(test) * np.where(np.arange(7) == 3, -1.0, 1.0)
+    assert np.abs(learner.predict(test) - expected).max() < 1e-7
+    assert learner.chain_.gains[3] * learner.chain_.gains[2] < 0
+
+
+@pytest.mark.parametrize(
+    ("settings", "field"),
+    [
+        ({"parents": [-1, 2, 0]}, "parents"),
+        ({"parents": [-1]}, "parents"),
+        ({"torque_noise": -1.0}, "torque_noise"),
+        ({"angle_noise": [0.1, 0.1]}, "angle_noise"),
+        ({"max_starts": 0}, "max_starts"),
+        ({"window": 0.5}, "window"),
+        ({"known_gains": [1.0, 1.0, 1.0]}, "known_gains"),
+        ({"unknown_gains": True, "known_gains": [0.0, 1.0, 1.0]}, "known_gains"),
+    ],
+)
+def test_settings_that_make_no_sense_are_refused(settings, field):
+    _, q, torque = measured("3r", 8, 0)
+    with pytest.raises(InputError, match=field):
+        RigidChain(**settings).fit(q, torque)
+
+
+def test_samples_that_make_no_sense_are_refused():
+    _, q, torque = measured("3r", 8, 0)
+    with pytest.raises(InputError, match="NaN"):
+        RigidChain().fit(np.where(np.arange(3) == 1, np.nan, q), torque)
+    with pytest.raises(InputError, match="one torque per joint"):
+        RigidChain().fit(q, torque[:, :2])
+    with pytest.raises(InputError, match="weight"):
+        RigidChain().fit(q, torque, np.zeros(8))
+
+
+def test_weights_and_clones():
+    gravity, q, torque = measured("3r", 12, 0)
+    wrong = torque.copy()
+    wrong[3] += 5.0
+    weights = np.where(np.arange(12) == 3, 0.0, 1.0)
+    learner = clone(RigidChain()).fit(q, wrong, weights)
+    assert learner.verdict_ is Verdict.ROUNDING
+    assert np.abs(learner.predict(q) - gravity.torque(q)).max() < 1e-9
+
+
+def test_one_joint_takes_flat_torques():
+    q = np.linspace(-3, 3, 7)
+    learner = RigidChain().fit(q[:, None], 6.0 * np.cos(q + 0.2))
+    assert learner.predict([[0.5]]).shape == (1,)
+    assert abs(learner.predict([[0.5]])[0] - 6.0 * np.cos(0.7)) < 1e-9
