@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
-from learning.discovery import DiscoverySettings, babble, choose_target, discover
+from learning.discovery import DiscoverySettings, babble, choose_target, discover, lead
 from learning.exploration.by_name import DIRECTIONS, check_exploration, exploration_by_name
 from learning.exploration.cell_choice import central_domain
 from learning.exploration.explored_share import ExploredShare
 from learning.exploration.loop import Exploration, Learner
 from learning.exploration.settings import ExplorationSettings
 from learning.exploration.step import ExplorationStep
+from learning.home_torque import Search, find_home_torque, measure_home_torque
 from learning.relations.active_confirmation import next_torque
 from learning.relations.learned_symmetries import LearnedSymmetries
 from learning.relations.relation_learning import learn_relations
@@ -55,6 +57,10 @@ class SchemeSettings:
         Torques commanded while learning.
     confirm : int
         Torques at the end of the discovery, each chosen to say most about the relations.
+    guided : bool
+        Whether the arm can be placed and held from outside: its home torque is then measured, and
+        an arm that would not stay there by itself is led through its whole range, with
+        ``arm.reach`` the limits (n, 2) [rad] it is led within.
     from_trajectories : bool
         Whether the static torques of configurations passed by are admitted too, once the
         relations are known (`visited_torques`).
@@ -68,6 +74,7 @@ class SchemeSettings:
     samples: int = 2000
     strategy: str = DIRECTIONS
     confirm: int = 0
+    guided: bool = False
     from_trajectories: bool = False
 
     def __post_init__(self) -> None:
@@ -98,6 +105,9 @@ class Discovery:
     outcome: Outcome
     playback: Playback | None
     new: bool
+
+
+_Motions = Generator[Discovery, None, Array | None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,6 +147,9 @@ class Scheme:
         The estimate of the BCTS, where the arm has settled and away from its limits.
     learner : Learner or None
         The inverse statics model.
+    home_torque : (n,) array or None
+        Torque about which the first ones are commanded [N m]; None where the arm was found not to
+        hold itself.
     """
 
     def __init__(
@@ -156,6 +169,7 @@ class Scheme:
         self.learned: LearnedSymmetries | None = None
         self.domain: FundamentalDomain | None = None
         self.learner: Learner | None = None
+        self.home_torque: Array | None = None
         self.gates: list[GateDecision] = []
         self.targets: list[Array] = []
         self.exploration: Exploration | None = None
@@ -180,7 +194,12 @@ class Scheme:
     def torque_range(self) -> Array:
         """Largest torque held at each joint [N m], shape (n,); zero for joints without gravity."""
         _, torques = self.samples
-        largest = np.abs(torques).max(axis=0, initial=0.0)
+        return self._range_about(np.zeros(torques.shape[1]))
+
+    def _range_about(self, centre: Array) -> Array:
+        """Largest difference of a held torque from ``centre`` at each joint [N m], (n,)."""
+        _, torques = self.samples
+        largest = np.abs(torques - centre).max(axis=0, initial=0.0)
         # joints that could not hold the smallest torque tried: gravity does not reach them
         return np.where(largest > 1e-9 * largest.max(initial=0.0), largest, 0.0)
 
@@ -222,17 +241,21 @@ class Scheme:
         """
         settings = self.settings.discovery
         self.arm.go_home()
-        for outcome in babble(self.arm, self.rng, settings.babbling):
-            self._take(outcome)
-            yield Discovery(None, outcome, None, outcome.kind is OutcomeKind.SETTLED)
+        babbling = babble(self.arm, self.rng, settings.babbling, self._search())
+        self.home_torque = yield from self._taken(babbling)
         self.arm.go_home()
+        if self.home_torque is None:
+            if self.settings.guided:
+                yield from self._lead()
+            return
         for _ in range(self.settings.max_targets):
             _, torques = self.samples
             target = choose_target(torques, self.rng, settings.away_from_zero, self.targets)
             if target is None:
                 break
             self.targets.append(target)
-            for played in discover(self.arm, target, self.torque_range, self.rng, settings):
+            about, spread = self.home_torque, self._range_about(self.home_torque)
+            for played in discover(self.arm, target, spread, self.rng, settings, centre=about):
                 self._take(played.playback.outcome)
                 self._trajectories.append(np.asarray(played.playback.q))
                 yield Discovery(target, played.playback.outcome, played.playback, played.new)
@@ -240,6 +263,33 @@ class Scheme:
                 break
         yield from self._confirm()
         self._take_trajectories()
+
+    def _search(self) -> Callable[[ProfileArm], Search]:
+        if self.settings.guided:
+            return lambda arm: measure_home_torque(arm, self.rng)
+        return find_home_torque
+
+    def _taken(self, motions: Generator[Outcome, None, Array | None]) -> _Motions:
+        """Take every outcome in; return what the motions return."""
+        while True:
+            try:
+                outcome = next(motions)
+            except StopIteration as end:
+                return None if end.value is None else np.asarray(end.value)
+            self._take(outcome)
+            yield Discovery(None, outcome, None, outcome.kind is OutcomeKind.SETTLED)
+
+    def _lead(self) -> Iterator[Discovery]:
+        """Lead the arm about until its samples show the relations."""
+        arm: Any = self.arm
+        settings = self.settings.discovery
+        for batch in range(1 + self.settings.max_targets):
+            count = settings.led if batch else settings.babbling
+            for outcome in lead(arm, arm.reach, self.rng, count):
+                self._take(outcome)
+                yield Discovery(None, outcome, None, True)
+            if self._gate():
+                break
 
     def _take_trajectories(self) -> None:
         """Admit the torques that would have held the arm where it passed by."""
@@ -279,7 +329,8 @@ class Scheme:
         passed = missing is None and order >= self.settings.n_min and confirmed
         if self.settings.confirmations == 0:
             passed = missing is None and order >= self.settings.n_min
-        self.gates.append(GateDecision(len(self.targets), order, passed, missing))
+        asked = len(self.targets) or len(self.gates) + 1
+        self.gates.append(GateDecision(asked, order, passed, missing))
         return passed
 
     def learn(self) -> Iterator[ExplorationStep]:
@@ -298,6 +349,7 @@ class Scheme:
             points = self.domain.sample(np.random.default_rng(0), SHARE_POINTS)
             explored = ExploredShare(points, self.settings.exploration.step_width, group)
         self.learner = self._make_learner(group, self.torque_range)
+        about = {} if self.home_torque is None else {"home_torque": self.home_torque}
         self.exploration = exploration_by_name(
             self.settings.strategy,
             self.arm,
@@ -309,5 +361,6 @@ class Scheme:
             static_torques=self.static_torques,
             settings=self.settings.exploration,
             explored=explored,
+            **about,
         )
         yield from self.exploration.steps(self.settings.samples)

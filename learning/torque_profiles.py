@@ -50,6 +50,7 @@ def draw_profile(
     scale: ArrayLike,
     rng: np.random.Generator,
     shape: ProfileShape | None = None,
+    centre: ArrayLike = 0.0,
 ) -> Array:
     """Draw a torque profile between two torques of equal absolute value.
 
@@ -63,6 +64,8 @@ def draw_profile(
         Source of randomness.
     shape
         Distributions; sensible ones by default.
+    centre
+        Middle of the intermediate torques (n,) [N m].
 
     Returns
     -------
@@ -94,7 +97,7 @@ def draw_profile(
     steps = max(2, round(rng.uniform(*shape.seconds) / shape.step_seconds))
     count = int(rng.integers(shape.knots[0], shape.knots[1], endpoint=True))
     size = shape.reach * np.asarray(scale, dtype=float)
-    middle = rng.uniform(-size, size, (count, len(first)))
+    middle = np.asarray(centre, dtype=float) + rng.uniform(-size, size, (count, len(first)))
     times = np.concatenate([[0.0], np.sort(rng.uniform(0.15, 0.85, count)), [1.0]])
     # knots that nearly coincide would make the spline overshoot without bound
     times[1:-1] = 0.5 * times[1:-1] + 0.5 * np.linspace(0.15, 0.85, count + 2)[1:-1]

@@ -101,6 +101,8 @@ class RunReport:
     level_sets : LevelSetReport or None
     verdicts : tuple of Verdict
         Verdicts besides those of relations and model.
+    remarks : tuple of str
+        What else the reader should know of how the run was made.
     """
 
     setup: RunSetup
@@ -115,6 +117,7 @@ class RunReport:
     model: ModelJudgement | None = None
     level_sets: LevelSetReport | None = None
     verdicts: tuple[Verdict, ...] = field(default=())
+    remarks: tuple[str, ...] = ()
 
     @property
     def all_verdicts(self) -> tuple[Verdict, ...]:

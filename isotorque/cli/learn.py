@@ -21,7 +21,14 @@ from isotorque.cli.options import (
 )
 from isotorque.cli.output import emit_json, row, say
 from isotorque.cli.robot_options import RobotName, takes_robot
-from isotorque.cli.run_options import LearnAnyway, LearnerName, NMin, Samples, Symmetries
+from isotorque.cli.run_options import (
+    LearnAnyway,
+    LearnerName,
+    NMin,
+    Samples,
+    Strategy,
+    Symmetries,
+)
 
 SIMULATED = (
     "n_min",
@@ -40,14 +47,7 @@ def learn(
     context: typer.Context,
     robot: RobotName,
     out: Out,
-    strategy: Annotated[
-        str,
-        typer.Option(
-            "--strategy",
-            metavar="NAME",
-            help="direction-sampling, goal-babbling, motor-babbling or lattice.",
-        ),
-    ] = "direction-sampling",
+    strategy: Strategy = "direction-sampling",
     samples: Samples = None,
     learner: LearnerName = None,
     symmetries: Symmetries = "learned",

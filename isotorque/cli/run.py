@@ -8,7 +8,6 @@ from isotorque.cli.options import (
     Engine,
     Json,
     Out,
-    Physics,
     Quiet,
     Seed,
     Settle,
@@ -17,12 +16,14 @@ from isotorque.cli.options import (
 from isotorque.cli.output import emit_json, plain, say
 from isotorque.cli.robot_options import RobotName, takes_robot
 from isotorque.cli.run_options import (
+    ChosenPhysics,
     Confirm,
     LearnAnyway,
     LearnerName,
     ModelTolerance,
     NMin,
     Samples,
+    Strategy,
     Symmetries,
 )
 
@@ -31,6 +32,7 @@ from isotorque.cli.run_options import (
 def run(
     robot: RobotName,
     out: Out,
+    strategy: Strategy = "direction-sampling",
     samples: Samples = None,
     learner: LearnerName = None,
     symmetries: Symmetries = "learned",
@@ -38,7 +40,7 @@ def run(
     confirm: Confirm = 0,
     learn_anyway: LearnAnyway = False,
     tolerance: ModelTolerance = None,
-    physics: Physics = "open_loop",
+    physics: ChosenPhysics = None,
     engine: Engine = "compiled",
     settle: Settle = "finished",
     seed: Seed = 0,
@@ -52,35 +54,38 @@ def run(
 
     Passed is a run whose relations are none of them false, whose gate before learning is passed,
     and whose model is right within --tolerance on the whole space; where orbits without a stable
-    member exist, those with one are judged too, on their own. The same command resumes a run that
-    was stopped.
+    member exist, those with one are judged too, on their own. An arm that cannot hold itself is
+    led. The same command resumes a run that was stopped.
     """
     from isotorque.cli.progress import progress_bars
     from isotorque.files import output_directory
-    from isotorque.runs.experiment import run_experiment, save_run_model
+    from isotorque.runs.experiment import save_run_model
     from isotorque.runs.judgement import judge_run
+    from isotorque.runs.learn_options import run_options
     from isotorque.runs.recorded_relations import save_relations
-    from isotorque.runs.run_options import ArmOptions, RunOptions, default_learner, default_samples
-    from learning.exploration.by_name import DIRECTIONS
+    from isotorque.runs.run_options import ArmOptions
+    from isotorque.runs.strategy import perform
     from verify.report import write_report
 
-    arm = ArmOptions(seed, physics, engine, settle, angle_noise, torque_noise, encoder_step)
-    learner = default_learner(DIRECTIONS) if learner is None else learner
-    samples = default_samples(DIRECTIONS, learner) if samples is None else samples
-    options = RunOptions(
+    arm = ArmOptions(seed, "open_loop", engine, settle, angle_noise, torque_noise, encoder_step)
+    options = run_options(
         robot,
         arm,
-        n_min,
-        samples,
-        learner,
-        symmetries,
+        physics,
+        n_min=n_min,
+        samples=samples,
+        learner=learner,
+        symmetries=symmetries,
+        strategy=strategy,
         confirm=confirm,
         learn_anyway=learn_anyway,
         tolerance=tolerance,
     )
+    if options.led_by_need:
+        say(f"{robot.spec} cannot hold itself within its limits: it is led and held (guided)", quiet)
     output_directory(out)
     with progress_bars(quiet) as progress:
-        outcome = run_experiment(options, out, progress)
+        outcome = perform(options, out, progress)
         progress("judging", 0, 1, "")
         report = judge_run(outcome)
         progress("judging", 1, 1, "")

@@ -16,6 +16,24 @@ Samples = Annotated[
         show_default=False,
     ),
 ]
+Strategy = Annotated[
+    str,
+    typer.Option(
+        "--strategy",
+        metavar="NAME",
+        help="direction-sampling, goal-babbling, motor-babbling or lattice.",
+    ),
+]
+ChosenPhysics = Annotated[
+    str | None,
+    typer.Option(
+        "--physics",
+        metavar="MODE",
+        help="open_loop, geared or guided; by default open_loop, for a lattice and for an arm that"
+        " cannot hold itself guided.",
+        show_default=False,
+    ),
+]
 LearnerName = Annotated[
     str | None,
     typer.Option(
@@ -23,7 +41,7 @@ LearnerName = Annotated[
         metavar="NAME",
         help="Online: local-linear-map, local-linear-map-it, recursive-least-squares; batch:"
         " network, gaussian-process, trigonometric, parametric; by default local-linear-map-it,"
-        " for a lattice network, for data gaussian-process.",
+        " for a lattice network, for data and for more than 3 joints gaussian-process.",
         show_default=False,
     ),
 ]

@@ -50,10 +50,12 @@ def simulate(
 
     from learning.physics import MeasurementNoise
     from learning.simulation.simulated_arm import SimulatedArm
+    from learning.torque_limits import check_torque
     from symbolic.robots import load_robot
 
     loaded = load_robot(robot)
     tau = numbers(torque, "--torque", loaded.n)
+    check_torque(loaded.name, "--torque", tau, loaded.effort, loaded.joint_names)
     q0 = None if start is None else numbers(start, "--from", loaded.n)
     arm = SimulatedArm(
         loaded,

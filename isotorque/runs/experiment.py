@@ -24,10 +24,12 @@ from learning.exploration.step import ExplorationStep
 from learning.learners.by_name import BATCH_LEARNERS, learner_by_name, online_learner
 from learning.learners.collected_samples import CollectedSamples
 from learning.model_files import SavedModel, save_model
+from learning.physics import PhysicsMode
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
 from learning.scheme import Discovery, LearnerFactory, Scheme, SchemeSettings
 from learning.simulation.simulated_arm import SimulatedArm
+from learning.torque_limits import TorqueLimitedArm
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
@@ -64,6 +66,12 @@ class RunOutcome:
         RMSE on the dense set while learning.
     seconds : dict of str to float
         Wall-clock time of the stages [s].
+    remarks : tuple of str
+        What else the user should know.
+    details : dict
+        More for the JSON document of the model, plain data.
+    lattice_suffices : bool
+        Whether a lattice showed the relations that are needed.
     """
 
     options: RunOptions
@@ -76,11 +84,14 @@ class RunOutcome:
     steps: list[ExplorationStep] = field(default_factory=list)
     curve: list[CurvePoint] = field(default_factory=list)
     seconds: dict[str, float] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+    details: dict[str, Any] = field(default_factory=dict)
+    lattice_suffices: bool = False
 
     @property
     def gate_passed(self) -> bool:
-        """Whether the discovery told enough to begin learning (n_sym >= n_min)."""
-        return self.scheme.gate_passed
+        """Whether discovery or lattice told enough to begin learning (n_sym >= n_min)."""
+        return self.scheme.gate_passed or self.lattice_suffices
 
     @property
     def stops_before_learning(self) -> bool:
@@ -91,6 +102,32 @@ class RunOutcome:
         """How the motions of the discovery ended."""
         kinds = [motion.outcome.kind for motion in self.motions]
         return {kind: kinds.count(kind) for kind in OutcomeKind}
+
+
+def prepare_run(options: RunOptions) -> RunOutcome:
+    """Load the robot and derive the truth about it; nothing moves yet.
+
+    Raises
+    ------
+    InputError
+        For a robot or options that cannot be used.
+    """
+    made_with = options.discovering
+    robot = load_robot(options.robot)
+    clock: dict[str, float] = {}
+    with timed(clock, "derivation"):
+        gravity = GravityModel(robot)
+        group = primary_symmetries(gravity.potential)
+    arm = simulated_arm(robot, made_with, 0)
+    scheme = Scheme(
+        arm,
+        random_generator(made_with, 0),
+        _learner_factory(options, robot.n),
+        _scheme_settings(options),
+        group=group if options.symmetries == "exact" else None,
+        use_symmetries=options.symmetries != "none",
+    )
+    return RunOutcome(options, robot, gravity, group, arm, scheme, seconds=clock)
 
 
 @single_thread()
@@ -116,37 +153,27 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
     InputError
         For a robot or options that cannot be used, and for a directory that holds another run.
     """
-    made_with = options.discovering
-    robot = load_robot(options.robot)
-    clock: dict[str, float] = {}
-    with _timed(clock, "derivation"):
-        gravity = GravityModel(robot)
-        group = primary_symmetries(gravity.potential)
-    arm = simulated_arm(robot, made_with, 0)
+    result = prepare_run(options)
+    made_with, arm, scheme = options.discovering, result.arm, result.scheme
     chosen = {"n_min": options.n_min}
     if options.confirm:  # recordings that were made without it stay as they are
         chosen["confirm"] = options.confirm
-    info = run_info(robot, arm, made_with, "discover", chosen)
+    info = run_info(result.robot, arm, made_with, "discover", chosen)
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
-        _timed(clock, "discovery"),
+        timed(result.seconds, "discovery"),
     ):
         keep_robot_file(options.robot, out)
         recorded = RecordedSimulation(arm, recording, phase="discovery")
-        scheme = Scheme(
-            recorded,
-            random_generator(made_with, 0),
-            _learner_factory(options, robot.n),
-            _scheme_settings(options),
-            group=group if options.symmetries == "exact" else None,
-            use_symmetries=options.symmetries != "none",
-        )
-        result = RunOutcome(options, robot, gravity, group, arm, scheme, seconds=clock)
+        limited = TorqueLimitedArm(recorded, result.robot.effort)
+        is_guided = made_with.physics == PhysicsMode.GUIDED
+        scheme.arm = LedArm(limited, result.robot.limits) if is_guided else limited
         for motion in scheme.discover():
             result.motions.append(motion)
             progress(DISCOVERING, len(result.motions), 0, _gate_note(scheme))
         progress(DISCOVERING, len(result.motions), len(result.motions), _gate_note(scheme))
         recorded.finish()
+    result.remarks += _torques_cut(limited, "discovery")
     return result
 
 
@@ -172,10 +199,13 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     options = result.options
     if not result.scheme.torque_range.any():
         what = f"number of torques held by itself, in {len(result.motions)} motions,"
-        accepted = "some; --strategy lattice leads an arm that holds none"
+        accepted = "some; guided physics leads an arm that holds none"
         raise InputError(result.robot.name, what, 0, accepted)
     if result.stops_before_learning:
         return
+    if result.scheme.home_torque is None and not options.is_led:
+        accepted = f"{DIRECTIONS} or {LATTICE}: the arm cannot hold itself and has to be led"
+        raise InputError(result.robot.name, "strategy", options.strategy, accepted)
     arm = simulated_arm(result.robot, options.arm, 1)
     chosen: dict[str, Any] = {k: getattr(options, k) for k in ("samples", "symmetries", "strategy")}
     # a batch learner does not change what the arm does: another one may use the same samples
@@ -185,14 +215,16 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     info = run_info(result.robot, arm, options.arm, "learn", chosen)
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
-        _timed(result.seconds, "learning"),
+        timed(result.seconds, "learning"),
     ):
         recorded = RecordedSimulation(arm, recording, phase="learning")
-        moved: Any = LedArm(recorded, result.robot.limits) if options.is_led else recorded
+        limited = TorqueLimitedArm(recorded, result.robot.effort)
+        moved: Any = LedArm(limited, result.robot.limits) if options.is_led else limited
         result.scheme.arm = moved
         result.scheme.rng = random_generator(options.arm, 1)
         _follow(result, progress)
         recorded.finish()
+    result.remarks += _torques_cut(limited, "learning")
     learner = result.scheme.learner
     if isinstance(learner, CollectedSamples):
         result.scheme.learner = learner.fitted()
@@ -227,7 +259,11 @@ def _scheme_settings(options: RunOptions) -> SchemeSettings:
     strategy = DIRECTIONS if options.strategy == LATTICE else options.strategy
     strategy = LED if options.is_led else strategy
     return SchemeSettings(
-        n_min=options.n_min, samples=options.samples, strategy=strategy, confirm=options.confirm
+        n_min=options.n_min,
+        samples=options.samples,
+        strategy=strategy,
+        confirm=options.confirm,
+        guided=options.discovering.physics == PhysicsMode.GUIDED,
     )
 
 
@@ -269,8 +305,15 @@ def _gate_note(scheme: Scheme) -> str:
     return f"{gate.order} relations after {gate.targets} torques"
 
 
+def _torques_cut(arm: TorqueLimitedArm, phase: str) -> tuple[str, ...]:
+    if not arm.cut:
+        return ()
+    return (f"{arm.cut} torques of the {phase} were cut to the largest of their joints' motors",)
+
+
 @contextmanager
-def _timed(clock: dict[str, float], stage: str) -> Iterator[None]:
+def timed(clock: dict[str, float], stage: str) -> Iterator[None]:
+    """Note the wall-clock time [s] that a stage takes."""
     start = time.perf_counter()
     yield
     clock[stage] = time.perf_counter() - start

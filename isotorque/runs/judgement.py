@@ -66,7 +66,7 @@ def judge_run(run: RunOutcome) -> RunReport:
         run.scheme.gates,
         run.options.n_min,
         learned_anyway=run.options.learn_anyway,
-        needs_gate=learned,
+        needs_gate=learned and not run.lattice_suffices,
     )
     verdicts: tuple[Verdict, ...] = ()
     if symmetry is not None and learned:
@@ -91,7 +91,14 @@ def judge_run(run: RunOutcome) -> RunReport:
         model=_model(run),
         level_sets=_level_sets(run),
         verdicts=verdicts,
+        remarks=_led(run) + run.remarks,
     )
+
+
+def _led(run: RunOutcome) -> tuple[str, ...]:
+    if not run.options.led_by_need:
+        return ()
+    return (f"{run.robot.name} cannot hold itself within its limits: it was led and held (guided)",)
 
 
 def _setup(run: RunOutcome) -> RunSetup:
@@ -106,7 +113,14 @@ def _setup(run: RunOutcome) -> RunSetup:
         str(options.arm.seed),
     ]
     command += ["--samples", str(options.samples), "--learner", options.learner]
-    command += ["--symmetries", options.symmetries, "--n-min", str(options.n_min)]
+    command += [
+        "--strategy",
+        options.strategy,
+        "--symmetries",
+        options.symmetries,
+        "--n-min",
+        str(options.n_min),
+    ]
     command += ["--physics", options.arm.physics, "--engine", options.arm.engine]
     command += ["--settle", options.arm.settle, *options.robot.arguments()]
     for option, value in (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,40 +13,51 @@ from isotorque.runs.experiment import (
     Progress,
     RunOutcome,
     discover_symmetries,
+    prepare_run,
+    timed,
 )
-from isotorque.runs.learned_model import (
-    LearnedModel,
-    choices,
-    gate_remarks,
-    missing_symmetries,
-    model_of_run,
-)
+from isotorque.runs.learned_model import LearnedModel, model_of_run
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
 from isotorque.runs.robot_copy import keep_robot_file
 from isotorque.runs.run_options import RunOptions
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.single_thread import single_thread
+from learning.arm import Settled
+from learning.exploration.step import ExplorationStep
+from learning.exploration.targets import Phase
 from learning.learners.by_name import ONLINE_LEARNERS, LearningTask, learner_by_name
 from learning.recordings.recorded_simulation import RecordedSimulation
 from learning.recordings.recording import Recording
 from learning.relations.relation_learning import learn_relations
 from learning.sampling.reachable_lattice import ReachableLattice, reachable_lattice, visit
-from symbolic.gravity import GravityModel
+from symbolic.domain import FundamentalDomain
 from symbolic.relations import SymmetryGroup
-from symbolic.robots import Robot, load_robot
-from symbolic.symmetries import primary_symmetries
+from symbolic.robots import Robot
 
 Array = NDArray[np.float64]
 
 
-@single_thread()
 def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> LearnedModel:
     """Place the arm at a lattice of configurations, measure torques, learn from all of them.
+
+    Parameters, errors and what is recorded as of `run_lattice`.
+
+    Returns
+    -------
+    LearnedModel
+    """
+    return model_of_run(run_lattice(options, out, progress))
+
+
+@single_thread()
+def run_lattice(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:
+    """Visit a lattice of configurations with a guided arm, and learn from all of them at once.
 
     Parameters
     ----------
     options
-        What to run; symmetries that are to be learned are discovered first.
+        What to run; symmetries that are to be learned are discovered first, unless the arm has to
+        be led: then the lattice alone shows them.
     out
         Directory; every sample is committed to ``run.sqlite`` before the next motion begins. What
         is recorded there is not measured again.
@@ -56,7 +66,7 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
 
     Returns
     -------
-    LearnedModel
+    RunOutcome
         Without a learner where discovery and lattice told too little of the symmetries.
 
     Raises
@@ -64,67 +74,82 @@ def learn_from_lattice(options: RunOptions, out: Path, progress: Progress) -> Le
     InputError
         For a robot or options that cannot be used, and for a directory that holds another run.
     """
-    remarks: tuple[str, ...] = ()
-    enough = True
-    found: RunOutcome | None = None
-    if options.symmetries == "learned":
-        found = discover_symmetries(options, out, progress)
-        robot, gravity, group = found.robot, found.gravity, found.scheme.group
-        remarks = missing_symmetries(found)
-    else:
-        robot = load_robot(options.robot)
-        gravity = GravityModel(robot)
-        exact = options.symmetries == "exact"
-        group = primary_symmetries(gravity.potential) if exact else None
-    lattice, q, torque = _sampled(options, robot, group, out, progress)
+    discovers = options.symmetries == "learned" and not options.led_by_need
+    run = discover_symmetries(options, out, progress) if discovers else prepare_run(options)
+    run.seconds.setdefault("discovery", 0.0)
+    with timed(run.seconds, "learning"):
+        _learn(run, out, progress)
+    return run
+
+
+def _learn(run: RunOutcome, out: Path, progress: Progress) -> None:
+    options, scheme = run.options, run.scheme
+    lattice, q, torque = _sampled(options, run.robot, scheme.group, out, progress)
     if lattice.reachable < 1.0:
         share = 100 * (1 - lattice.reachable)
-        remarks += (f"{share:.3g} % of the orbits lie outside the joint limits and were skipped",)
+        run.remarks += (
+            f"{share:.3g} % of the orbits lie outside the joint limits and were skipped",
+        )
     if len(lattice.q) != options.samples:
-        remarks += (f"{options.samples} samples asked for, a lattice of {len(lattice.q)} taken",)
-    if found is not None:
-        group, more, enough = _with_more_samples(found, q, torque)
-        remarks += more
-        if not enough:
-            remarks += gate_remarks(found)
-            if not options.learn_anyway:
-                return replace(model_of_run(found), remarks=remarks)
-    learner, curve = fitted_with_curve(
-        options.learner, options.task(robot.n), group, q, torque, DenseTest(robot, gravity)
+        run.remarks += (
+            f"{options.samples} samples asked for, a lattice of {len(lattice.q)} taken",
+        )
+    if options.symmetries == "learned":
+        run.remarks += _with_more_samples(run, q, torque)
+    if run.stops_before_learning:
+        return
+    run.details = {"reachable_share": lattice.reachable}
+    run.steps = [_step(k, *sample) for k, sample in enumerate(zip(q, torque, strict=True))]
+    group = scheme.group
+    if group is not None and group.rank:
+        scheme.domain = FundamentalDomain.near(group, run.arm.home)
+    scheme.learner, curve = fitted_with_curve(
+        options.learner,
+        options.task(run.robot.n),
+        group,
+        q,
+        torque,
+        DenseTest(run.robot, run.gravity),
     )
-    return LearnedModel(
-        robot,
-        gravity,
-        learner,
-        choices(options, enough),
-        len(q),
-        0 if found is None else len(found.motions),
-        1 if group is None else group.order,
-        curve,
-        remarks,
-        {"reachable_share": lattice.reachable},
+    run.curve = list(curve)
+
+
+def _step(number: int, q: Array, torque: Array) -> ExplorationStep:
+    """One place of the lattice, told like a step of an exploration."""
+    return ExplorationStep(
+        number=number,
+        phase=Phase.GOAL,
+        target=q,
+        torque=torque,
+        projected=False,
+        outcome=Settled(q, torque, 0.0),
+        learned=True,
+        weight=1.0,
+        alpha=np.nan,
+        turned=False,
+        explored=None,
+        window_error=None,
     )
 
 
-def _with_more_samples(
-    found: RunOutcome, q: Array, torque: Array
-) -> tuple[SymmetryGroup | None, tuple[str, ...], bool]:
-    """Relations that the lattice shows beside what the discovery showed, and a word on them.
+def _with_more_samples(run: RunOutcome, q: Array, torque: Array) -> tuple[str, ...]:
+    """Take over the relations that the lattice shows beside what the discovery showed; say so.
 
-    A lattice was led to places that the arm cannot hold by itself, so it may know better; the last
-    value says whether enough relations are known to learn, by either.
+    A lattice was led to places that the arm cannot hold by itself, so it may know better.
     """
-    group = found.scheme.group
+    group = run.scheme.group
     known = 1 if group is None else group.order
-    held, torques = found.scheme.samples
+    held, torques = run.scheme.samples
     learned = learn_relations(np.concatenate([held, q]), np.concatenate([torques, torque]))
-    enough = learned.missing is None and learned.order >= found.options.n_min
-    enough = enough or found.gate_passed
+    run.lattice_suffices = learned.missing is None and learned.order >= run.options.n_min
     free = learned.group.rank < learned.group.n
     if learned.order > known or (learned.order == known and (known > 1 or free)):
+        run.scheme.learned = learned
         words = f"symmetries: {learned.order} known with the samples of the lattice"
-        return learned.group, (words,) if learned.order > known else (), enough
-    return group, (), enough
+        return (words,) if learned.order > known else ()
+    if run.scheme.learned is None:
+        run.scheme.learned = learned
+    return ()
 
 
 def _sampled(

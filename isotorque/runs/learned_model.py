@@ -107,7 +107,8 @@ def model_of_run(run: RunOutcome) -> LearnedModel:
         len(run.motions),
         1 if group is None else group.order,
         tuple(run.curve),
-        (*missing_symmetries(run), *gate_remarks(run)),
+        (*run.remarks, *missing_symmetries(run), *gate_remarks(run)),
+        run.details,
     )
 
 

@@ -22,8 +22,18 @@ MOST_SAMPLES = 10_000_000
 """More would not fit into memory."""
 
 
-def default_learner(strategy: str) -> str:
-    """Return the learner where none is named: the paper's for online and for batch learning."""
+FEW_JOINTS = 3
+"""Up to so many joints the paper's learners are the default: it has no arm with more."""
+
+
+def default_learner(strategy: str, joints: int = 1) -> str:
+    """Return the learner where none is named: the paper's for online and for batch learning.
+
+    With more joints than the paper's arms, local models would need very many samples: a Gaussian
+    process takes their place.
+    """
+    if joints > FEW_JOINTS:
+        return "gaussian-process"
     return "network" if strategy == LATTICE else "local-linear-map-it"
 
 
@@ -97,6 +107,8 @@ class RunOptions:
         Whether to learn although fewer relations than ``n_min`` are known and confirmed.
     tolerance : float or None
         Torque error that the model is judged with [N m]; None: `default_tolerance`.
+    led_by_need : bool
+        Whether the arm was found not to hold itself anywhere, and is guided for that.
     """
 
     robot: RobotOptions
@@ -110,6 +122,7 @@ class RunOptions:
     confirm: int = 0
     learn_anyway: bool = False
     tolerance: float | None = None
+    led_by_need: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", RobotOptions.of(self.robot))

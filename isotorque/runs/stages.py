@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from isotorque.runs.run_options import ArmOptions
+from learning.home_torque import holds_itself
 from learning.physics import MeasurementNoise, PhysicsMode
 from learning.recordings.recording_reader import RecordingReader
 from learning.recordings.run_info import RunInfo
@@ -17,6 +18,8 @@ from symbolic.robot_options import RobotOptions
 from symbolic.robots import Robot
 
 DATABASE = "run.sqlite"
+TRIAL = 2
+"""Stage before the others, that nothing is kept of."""
 SENSORS = 100
 """Generators of sensors are numbered from here on."""
 
@@ -41,6 +44,12 @@ def simulated_arm(robot: Robot, options: ArmOptions, stage: int) -> SimulatedArm
         noise=noise,
         rng=random_generator(options, SENSORS + stage) if noise.is_random else None,
     )
+
+
+def cannot_hold_itself(robot: Robot, options: ArmOptions) -> bool:
+    """Say whether an arm has to be led: no torque keeps it where it is put."""
+    guided = replace(options, physics=PhysicsMode.GUIDED.value)
+    return not holds_itself(simulated_arm(robot, guided, TRIAL), random_generator(options, TRIAL))
 
 
 def run_info(

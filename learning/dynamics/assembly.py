@@ -144,7 +144,7 @@ def _home(
                 robot.name,
                 "limits",
                 limits.tolist(),
-                "limits that contain a home: a configuration that a constant torque can hold",
+                "limits with a home that a constant torque can hold, or guided physics",
             )
         return found
     chosen = vector(robot.name, "home", home, robot.n, " [rad]")

@@ -81,7 +81,7 @@ def exploration_by_name(
     if name == DIRECTIONS:
         return ConstrainedDirectionSampling(arm, learner, rng, domain=domain, **options)
     if name == LED:
-        led = {k: v for k, v in options.items() if k != "static_torques"}
+        led = {k: v for k, v in options.items() if k not in ("static_torques", "home_torque")}
         return GuidedDirectionSampling(arm, learner, rng, domain=domain, **led)
     if name == MOTORS:
         return MotorBabbling(arm, learner, rng, **options)

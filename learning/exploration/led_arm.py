@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.arm import Outcome
+from learning.arm import Outcome, Playback
 from learning.exploration.strategies import GuidedArm
 from learning.sampling.reachable_lattice import MARGIN, turned_into
+from symbolic.joint_limits import one_turn
 
 Array = NDArray[np.float64]
 
@@ -52,6 +53,16 @@ class LedArm:
     def go_home(self) -> None:
         """Return to the home configuration."""
         self._arm.go_home()
+
+    def play(self, torques: Array, step_seconds: float) -> Playback:
+        """Apply torques (T, n) [N m] one after the other, then wait under the last one."""
+        played: Playback = self._arm.play(torques, step_seconds)  # type: ignore[attr-defined]
+        return played
+
+    @property
+    def reach(self) -> Array:
+        """Angles (n, 2) to which the arm may be led, a turn per joint at most [rad]."""
+        return one_turn(self._limits)
 
     def place(self, q: ArrayLike) -> None:
         """Lead the arm towards q (n,) [rad], as far as its limits allow."""
