@@ -82,7 +82,8 @@ def run(
         tolerance=tolerance,
     )
     if options.led_by_need:
-        say(f"{robot.spec} cannot hold itself within its limits: it is led and held (guided)", quiet)
+        words = "cannot hold itself within its limits: it is led and held (guided)"
+        say(f"{robot.spec} {words}", quiet)
     output_directory(out)
     with progress_bars(quiet) as progress:
         outcome = perform(options, out, progress)
