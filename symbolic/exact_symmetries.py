@@ -18,8 +18,18 @@ RELATIVE = 1e-12
 """Float coefficients closer than this, relative to the largest, count as equal."""
 
 
-def exact_symmetries(potential: TrigonometricPolynomial) -> SymmetryGroup:
+def exact_symmetries(
+    potential: TrigonometricPolynomial, neglected: float = RELATIVE
+) -> SymmetryGroup:
     """Return the complete group of a potential; see `symbolic.symmetries.primary_symmetries`.
+
+    Parameters
+    ----------
+    potential
+        U [J].
+    neglected
+        Terms up to this fraction of the largest amplitude are left out. At 0 none is, and the
+        relations that are ``exact`` are those of U as it is, to the last digit.
 
     Examples
     --------
@@ -29,7 +39,8 @@ def exact_symmetries(potential: TrigonometricPolynomial) -> SymmetryGroup:
     numeric = specialised(potential)
     amplitude = numeric.amplitudes()
     limit = RELATIVE * float(amplitude.max(initial=0.0))
-    kept = (amplitude > limit) & np.any(numeric.frequencies, axis=1)
+    least = neglected * float(amplitude.max(initial=0.0))
+    kept = (amplitude > least) & np.any(numeric.frequencies, axis=1)
     complete = int(kept.sum()) == int(np.any(numeric.frequencies, axis=1).sum())
     classes = amplitude_classes(np.abs(numeric.complex()[kept]), limit)
     blocks = frequency_blocks(numeric.frequencies[kept])

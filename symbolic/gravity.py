@@ -125,6 +125,17 @@ class GravityModel:
         return self.potential.significant()
 
     @cached_property
+    def neglected(self) -> TrigonometricPolynomial:
+        """The terms that `significant_potential` lacks: what is said without them names them."""
+        return self.potential - self.significant_potential
+
+    @cached_property
+    def neglected_bound(self) -> Floats:
+        """What the neglected terms make of each torque at most, for every q [N m]; (n,)."""
+        size = self.neglected.gradient_bound()
+        return np.where(size > 0.0, np.nextafter(size * (1 + 1e-9), np.inf), 0.0)
+
+    @cached_property
     def components(self) -> tuple[TrigonometricPolynomial, ...]:
         """The torque of each joint as a trigonometric polynomial [N m], significant terms only."""
         return tuple(self.significant_potential.derivative(i) for i in range(self.n))

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from symbolic.errors import InputError
+from symbolic.exact_symmetries import RELATIVE, exact_symmetries
 from symbolic.gravity import GravityModel
 from symbolic.relations import LARGEST_LIST, SymmetryGroup, SymmetryRelation, close
 from symbolic.symmetries import primary_symmetries
+from symbolic.trigonometric import TrigonometricPolynomial
+from verify.proof import exact_potential, prove_relation
 from verify.relation_files import RelationsFile
 from verify.relations import describe_relation, verify_relation, verify_relations
 from verify.verdict import Status, Verdict
-
-ROUNDED_BOUND = 1e-9
-"""What a printed bound may be below the true one by rounding, relative and in N m."""
 
 
 def verify_relations_file(
@@ -43,10 +43,12 @@ def verify_relations_file(
 
     Notes
     -----
-    A claimed bound is refuted only by a configuration that exceeds it. An ``order`` is the claim
-    that the relations form a group. That none is missing is a claim of its own, made by
-    ``complete`` and judged against the exact group: a list that lacks some is not wrong in that,
-    and where it claims no more it is told how many there are.
+    A claimed bound is refuted only by a configuration that exceeds it by more than rounding, in
+    proportion to the arm (`GravityModel.rounding`); that of a proved relation is about its exact
+    offset. An ``order`` is the claim that the relations form a group. That none is missing is a
+    claim of its own, made by ``complete`` and judged against the exact group: a list that lacks
+    some is not wrong in that, and where it claims no more it is told how many there are. The words
+    name the terms of the potential that the exact group was found without, where there are any.
     """
     if file.n != gravity.n:
         raise InputError(file.source, "number of joints", file.n, f"{gravity.n}, as the robot has")
@@ -56,9 +58,9 @@ def verify_relations_file(
         )
     verdicts = list(verify_relations(file.relations, gravity, tolerance))
     if any(relation.exact for relation in file):
-        verdicts.append(_exactness(file, gravity))
+        verdicts.append(_exactness(file, gravity, verdicts))
     if any(np.isfinite(relation.bound).any() for relation in file):
-        verdicts.append(_bounds(file, gravity))
+        verdicts.append(_bounds(file, gravity, verdicts))
     exact = all(verdict.status is Status.PROVED for verdict in verdicts[: len(file)])
     if file.generate:
         if file.complete or (file.order is not None and exact):
@@ -75,25 +77,27 @@ def verify_relations_file(
     return tuple(verdicts)
 
 
-def _exactness(file: RelationsFile, gravity: GravityModel) -> Verdict:
+def _exactness(file: RelationsFile, gravity: GravityModel, verdicts: list[Verdict]) -> Verdict:
     claim = "the relations called exact are exact"
     worst = 0.0
-    for number, relation in enumerate(file, 1):
+    for number, (relation, verdict) in enumerate(zip(file, verdicts, strict=False), 1):
         if relation.exact:
-            verdict = verify_relation(relation, gravity, 0.0)
-            worst = max(worst, verdict.worst_error)
             if verdict.status is not Status.PROVED:
+                strict = verify_relation(relation, gravity, 0.0)
                 words = f"{claim} (relation {number}: {describe_relation(relation)})"
-                return Verdict(words, Status.REFUTED, worst, verdict.counterexample)
+                return Verdict(words, Status.REFUTED, strict.worst_error, strict.counterexample)
+            worst = max(worst, verdict.worst_error)
     return Verdict(claim, Status.PROVED, worst)
 
 
-def _bounds(file: RelationsFile, gravity: GravityModel) -> Verdict:
-    claim, status, worst = "no torque error exceeds the bound given for it", Status.BOUNDED, 0.0
-    for number, relation in enumerate(file, 1):
+def _bounds(file: RelationsFile, gravity: GravityModel, verdicts: list[Verdict]) -> Verdict:
+    claim = f"no torque error is {gravity.rounding:.1g} N m above the bound given for it"
+    status, worst = Status.BOUNDED, 0.0
+    for number, (relation, known) in enumerate(zip(file, verdicts, strict=False), 1):
+        if known.status is Status.PROVED:  # the error of its exact offset is none
+            continue
         claimed = np.where(np.isfinite(relation.bound), relation.bound, np.inf)
-        allowed = claimed * (1 + ROUNDED_BOUND) + ROUNDED_BOUND
-        verdict = verify_relation(relation, gravity, allowed)
+        verdict = verify_relation(relation, gravity, claimed + gravity.rounding)
         worst = max(worst, verdict.worst_error)
         if verdict.status is Status.REFUTED:
             words = f"{claim} (relation {number}: {describe_relation(relation)})"
@@ -105,20 +109,61 @@ def _bounds(file: RelationsFile, gravity: GravityModel) -> Verdict:
 
 def _there_are(gravity: GravityModel) -> int:
     """Number of exact relations that there are."""
-    return primary_symmetries(gravity.potential).order
+    return _exact_order(_literal_group(gravity))
 
 
 def _completeness(file: RelationsFile, gravity: GravityModel) -> Verdict:
-    group = primary_symmetries(gravity.potential)
-    free = ~np.any(gravity.potential.frequencies != 0, axis=0)
+    """Judge the claim that no relation is missing.
+
+    It is about the arm as given, if the relations are exactly its group; otherwise about its
+    potential up to terms and differences that only stand for rounding, which the words say.
+    """
+    count, words = len(file), ""
+    group = _literal_group(gravity)
+    order = _exact_order(group)
+    whole = count == order and _are_members(file, group)
+    whole = whole and all(_proved(relation, gravity.potential) for relation in file)
+    if not whole and (len(gravity.neglected) or not group.exact):
+        group = exact_symmetries(exact_potential(gravity.significant_potential))
+        order = group.order
+        whole = count == order and _are_members(file, group)
+        words = _up_to(gravity)
+    claim = f"the {count} relations listed are all that there are ({order}){words}"
+    return Verdict(claim, Status.PROVED if whole else Status.REFUTED, np.nan)
+
+
+def _literal_group(gravity: GravityModel) -> SymmetryGroup:
+    """Return what may be a symmetry of the potential with all its terms; some may be exact."""
+    return exact_symmetries(exact_potential(gravity.potential), neglected=0.0)
+
+
+def _exact_order(group: SymmetryGroup) -> int:
+    return group.order if group.exact else sum(relation.exact for relation in group)
+
+
+def _are_members(file: RelationsFile, group: SymmetryGroup) -> bool:
+    """Say whether all relations are in the group, and all different."""
+    free = ~np.any(group.basis != 0, axis=0)  # the signs of joints without torque do not matter
     listed = [
         SymmetryRelation(r.A, r.d, np.where(free, 1.0, r.Y), group.basis) for r in file.relations
     ]
-    found = sum(relation in group for relation in listed)
-    distinct = len({group.index(r) for r in listed if r in group})
-    claim = f"the {len(file)} relations listed are all that there are ({group.order})"
-    whole = found == len(file) and distinct == len(file) == group.order
-    return Verdict(claim, Status.PROVED if whole else Status.REFUTED, np.nan)
+    if not all(relation in group for relation in listed):
+        return False
+    return len({group.index(relation) for relation in listed}) == len(listed)
+
+
+def _proved(relation: SymmetryRelation, potential: TrigonometricPolynomial) -> bool:
+    return prove_relation(relation.A, relation.unwrapped_d, relation.Y, potential).holds
+
+
+def _up_to(gravity: GravityModel) -> str:
+    """Say up to what a group is complete that is not that of the arm as given."""
+    words = f", up to {RELATIVE:g} of the largest amplitude"
+    terms = len(gravity.neglected)
+    if terms:
+        count = "a term" if terms == 1 else f"{terms} terms"
+        words += f" and without {count} of at most {gravity.neglected_bound.max():.3g} N m"
+    return words
 
 
 def _generation(file: RelationsFile, gravity: GravityModel) -> Verdict:
@@ -128,7 +173,8 @@ def _generation(file: RelationsFile, gravity: GravityModel) -> Verdict:
     given = [
         SymmetryRelation(r.A, r.d, np.where(free, 1.0, r.Y), group.basis) for r in file.relations
     ]
-    claim = f"the {len(file)} relations listed generate all that there are ({group.order})"
+    words = "" if group.exact else _up_to(gravity)
+    claim = f"the {len(file)} relations listed generate all that there are ({group.order}){words}"
     numbers = {number for number in map(group.find, given) if number is not None}
     whole = len(numbers) == len(file) and file.order in (None, group.order)
     if whole and not {group.find(generator) for generator in group.generators} <= numbers:

@@ -25,6 +25,7 @@ def largest_value(
     refined: int = 4,
     seed: int = 0,
     starts: ArrayLike | None = None,
+    climb: bool = True,
 ) -> tuple[float, Vector]:
     """Search for the largest value of a function of the configuration.
 
@@ -46,6 +47,8 @@ def largest_value(
         Seed of the starting points: the same call finds the same point.
     starts
         More starting points, (k, n) [rad], within the limits.
+    climb
+        Whether to climb at all; otherwise the best starting point is returned.
 
     Returns
     -------
@@ -69,20 +72,20 @@ def largest_value(
     order = np.argsort(-values, kind="stable")[:refined]
     best, at = float(values[order[0]]), points[order[0]]
     spread = best - float(values.min())
-    if spread <= 0.0:  # constant, as far as can be seen
+    if not climb or spread <= 0.0:  # or constant, as far as can be seen
         return best, at
     scale = 1.0 / max(spread, float(np.finfo(float).tiny))
     for start in points[order]:
-        climb = scipy.optimize.minimize(
+        ascent = scipy.optimize.minimize(
             lambda q: -scale * float(value(q[None, :])[0]),
             start,
             jac=None if gradient is None else lambda q: -scale * gradient(q),
             method="L-BFGS-B",
             bounds=box,
         )
-        here = float(value(climb.x[None, :])[0])
+        here = float(value(ascent.x[None, :])[0])
         if here > best:
-            best, at = here, climb.x
+            best, at = here, ascent.x
     return best, at
 
 

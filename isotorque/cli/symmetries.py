@@ -63,6 +63,8 @@ def symmetries(
         "snapped": snapped,
         "snap_bound": loaded.snap_bound,
         "free_joints": gravity.free_joints,
+        "neglected_terms": len(gravity.neglected),
+        "neglected_bound": gravity.neglected_bound.tolist(),
         "seconds": seconds,
     }
     if tolerance > 0:
@@ -75,6 +77,11 @@ def symmetries(
     )
     for snap in loaded.snaps:
         print(f"  snapped: {snap.joint}: {snap.what} {snap.before} -> {snap.after}")
+    if len(gravity.neglected):
+        print(
+            f"  complete for the potential without {len(gravity.neglected)} terms, which make at "
+            f"most {gravity.neglected_bound.max():.3g} N m"
+        )
     for direction in group.free_directions:
         print(f"  free direction: {row(direction)}")
     if group.order > LISTED:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from symbolic.errors import InputError
+from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryRelation
+from symbolic.symmetries import primary_symmetries
 from verify.claims import verify_relations_file
 from verify.relation_files import RelationsFile, load_relations, relations_document
 from verify.verdict import Status, all_passed
@@ -81,6 +84,58 @@ def test_claimed_bounds_are_judged(two_link, bound, status):
     verdict = verify_relations_file(file_of([near]), two_link.gravity, 1.0)[-1]
     assert verdict.status == status
     assert verdict.worst_error == pytest.approx(18.4e-6, rel=1e-2)
+
+
+@pytest.mark.parametrize(("factor", "status"), [(1.0, "bounded"), (1 - 1e-6, "refuted")])
+def test_bounds_of_light_arms_are_judged_by_their_own_rounding(two_link, factor, status):
+    light = GravityModel(replace(two_link.gravity.tree, masses=np.array([5e-9, 5e-9])))
+    true_size = 18.39375e-9 * 1e-3
+    near = SymmetryRelation(
+        np.eye(2), [1e-3, -1e-3], [1, 1], bound=[true_size * factor, 1e-3 * true_size]
+    )
+    assert verify_relations_file(file_of([near]), light, 1.0)[-1].status == status
+
+
+def test_the_bound_of_a_proved_relation_is_about_its_exact_offset(two_link):
+    turn = SymmetryRelation(np.eye(2), [np.pi, 0], [-1, -1], bound=[0.0, 0.0])
+    verdicts = verify_relations_file(file_of([turn]), two_link.gravity, 0.0)
+    assert [verdict.status for verdict in verdicts] == [Status.PROVED, Status.BOUNDED]
+    assert 0.0 < verdicts[0].worst_error < 1e-14
+
+
+def test_an_exact_claim_with_an_offset_two_units_off_is_refuted(two_link):
+    d = np.pi + 2 * np.spacing(np.pi)
+    turn = SymmetryRelation(np.eye(2), [d, 0], [-1, -1], exact=True)
+    relation, exactness = verify_relations_file(file_of([turn]), two_link.gravity)
+    assert relation.status is Status.BOUNDED
+    assert exactness.status is Status.REFUTED
+
+
+def test_completeness_names_the_terms_it_leaves_out(two_link):
+    tree = replace(two_link.gravity.tree, masses=np.array([5.0, 5e-13]))
+    gravity = GravityModel(tree)
+    assert len(gravity.neglected) == 1
+    eight = list(two_link.group)  # true of every 2R arm, whatever its masses
+    verdict = verify_relations_file(file_of(eight, order=8), gravity)[-1]
+    assert verdict.status is Status.PROVED
+    assert verdict.claim.endswith("all that there are (8)")
+    for some in (eight[:4], list(primary_symmetries(gravity.potential))):
+        file = replace(file_of(some, order=4), complete=True)
+        verdict = verify_relations_file(file, gravity)[-1]
+        assert verdict.passed == (some[1] not in eight)
+        assert verdict.claim.endswith(
+            "(4), up to 1e-12 of the largest amplitude and without a term of at most 6.13e-13 N m"
+        )
+
+
+def test_groups_without_the_tiny_terms_are_bounded_not_complete(two_link):
+    gravity = GravityModel(replace(two_link.gravity.tree, masses=np.array([5.0, 5e-13])))
+    four = list(primary_symmetries(gravity.potential))
+    *relations, bounds, closed = verify_relations_file(file_of(four, order=4), gravity)
+    assert {v.status for v in relations} == {Status.PROVED, Status.BOUNDED}
+    assert bounds.passed
+    assert closed.claim == "the 4 relations listed form a group"
+    assert closed.status is Status.TESTED
 
 
 def test_approximate_relations_are_judged_as_a_group(two_link):
