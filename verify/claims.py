@@ -2,18 +2,32 @@
 
 from __future__ import annotations
 
+import itertools
+from typing import Any
+
 import numpy as np
 
 from symbolic.errors import InputError
 from symbolic.exact_symmetries import RELATIVE, exact_symmetries
 from symbolic.gravity import GravityModel
-from symbolic.relations import LARGEST_LIST, SymmetryGroup, SymmetryRelation, close
+from symbolic.relations import (
+    LARGEST_LIST,
+    SAME_ANGLE,
+    SymmetryGroup,
+    SymmetryRelation,
+    close,
+    wrap,
+)
 from symbolic.symmetries import primary_symmetries
 from symbolic.trigonometric import TrigonometricPolynomial
+from verify.exact_numbers import angle, exact_matrix, exact_vector, maps, nearest, times
 from verify.proof import exact_potential, prove_relation
 from verify.relation_files import RelationsFile
 from verify.relations import describe_relation, verify_relation, verify_relations
 from verify.verdict import Status, Verdict
+
+LARGE = 2.0**15
+"""Entries beyond are multiplied as integers of any size."""
 
 
 def verify_relations_file(
@@ -199,11 +213,27 @@ def _closure(file: RelationsFile, there_are: int | None = None) -> Verdict:
     known = "" if there_are is None else f" (of the {there_are} that there are)"
     claim = f"the {len(file)} relations listed{known} form a group"
     try:
+        huge = any(np.abs(relation.A_sat).max(initial=0.0) > LARGE for relation in file)
         if file.generate:
             claim = f"the {len(file)} relations listed generate a group of order {file.order}"
-            closed = close(file.relations, LARGEST_LIST).order == file.order
+            closed = not huge and close(file.relations, LARGEST_LIST).order == file.order
         else:
-            closed = SymmetryGroup(file.relations).is_closed
+            closed = _closed_exactly(file) if huge else SymmetryGroup(file.relations).is_closed
     except InputError:  # a matrix that does not map y = B q to itself, or offsets never come back
         closed = False
     return Verdict(claim, Status.TESTED if closed else Status.REFUTED, np.nan)
+
+
+def _closed_exactly(file: RelationsFile) -> bool:
+    """Say whether all products are listed, with integers of any size."""
+    entries = [(exact_matrix(r.A_sat), exact_vector(r.d_sat), tuple(r.Y)) for r in file]
+    listed: dict[tuple[Any, ...], list[Any]] = {}
+    for A, d, Y in entries:
+        listed.setdefault((tuple(map(tuple, A)), Y), []).append([float(x) for x in d])
+    for (A, d, Y), (B, e, Z) in itertools.product(entries, repeat=2):
+        signs = tuple(y * z for y, z in zip(Y, Z, strict=True))
+        offset = [nearest(angle(x)) for x in maps(A, d, e)]
+        known = listed.get((tuple(times(A, B)), signs), [])
+        if not any(np.all(np.abs(wrap(np.subtract(offset, x))) < SAME_ANGLE) for x in known):
+            return False
+    return True

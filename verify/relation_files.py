@@ -18,6 +18,9 @@ from verify.checked_json import Field, read_json
 
 Array = NDArray[np.float64]
 
+LARGEST_BASIS = 1_000_000
+"""Frequencies of arms are -1, 0 and 1; what is above this is no basis of theirs."""
+
 SAME = 1e-9
 """Numbers of a file that say the same thing twice may differ by this much."""
 
@@ -234,8 +237,13 @@ def _joint_names(root: Field, expected: Sequence[str] | None) -> tuple[str, ...]
 
 def _basis(field: Field, n: int) -> NDArray[np.int64]:
     rows = field.matrix(columns=n)
-    if not np.array_equal(rows, np.round(rows)) or np.linalg.matrix_rank(rows) < len(rows):
-        field.refuse("linearly independent rows of integers")
+    small = bool(np.all(np.abs(rows) <= LARGEST_BASIS))
+    if (
+        not small
+        or not np.array_equal(rows, np.round(rows))
+        or np.linalg.matrix_rank(rows) < len(rows)
+    ):
+        field.refuse(f"linearly independent rows of integers up to {LARGEST_BASIS:,}")
     return rows.astype(np.int64)
 
 

@@ -175,12 +175,18 @@ def _row(coefficients: Array, offset: float) -> str:
     text = ""
     for j, x in enumerate(coefficients):
         if x:
-            size = "" if abs(x) == 1 else f"{abs(x):.9g} "
+            size = "" if abs(x) == 1 else f"{_entry(abs(x))} "
             text += (" - " if x < 0 else " + ") + f"{size}q{j + 1}"
     if offset:
         text += (" - " if offset < 0 else " + ") + _angle(abs(offset))
     text = text or " + 0"
     return text[3:] if text.startswith(" + ") else "-" + text[3:]
+
+
+def _entry(value: float) -> str:
+    """Write an entry of A, in full where it would look like an integer that it is not."""
+    text = f"{value:.9g}"
+    return f"{value:.17g}" if float(text).is_integer() and not value.is_integer() else text
 
 
 def _angle(value: float) -> str:

@@ -149,6 +149,18 @@ def test_approximate_relations_are_judged_as_a_group(two_link):
     assert not verdicts[-1].passed
 
 
+@pytest.mark.parametrize("size", [3.0, 2.0**40, 1e200])
+def test_groups_of_huge_matrices_are_multiplied_exactly(two_link, size):
+    still = SymmetryRelation(np.eye(2), [0, 0], [1, 1])
+    shear = SymmetryRelation([[1, size], [0, -1]], [0, 0], [1, 1])  # its square is still
+    verdicts = verify_relations_file(file_of([still, shear], order=2), two_link.gravity)
+    assert verdicts[-1].claim == "the 2 relations listed form a group"
+    assert verdicts[-1].passed
+    grows = SymmetryRelation([[1, size], [0, 1]], [0, 0], [1, 1])
+    verdicts = verify_relations_file(file_of([still, grows], order=2), two_link.gravity)
+    assert not verdicts[-1].passed
+
+
 def test_files_about_other_arms_are_refused(arms):
     three = file_of(arms["3r"].group)
     with pytest.raises(InputError, match="number of joints is 3; accepted: 2"):

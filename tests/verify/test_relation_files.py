@@ -54,6 +54,28 @@ def test_A_d_and_Y_suffice(tmp_path):
         assert np.isnan(found.relations[0].bound).all()
 
 
+@pytest.mark.parametrize("number", [2**53 + 1, -(2**63) - 1, 10**30])
+@pytest.mark.parametrize("field", ["A", "d"])
+def test_integers_that_no_float_holds_are_refused_not_rounded(tmp_path, number, field):
+    entry = {"A": [[1]], "d": [0], "Y": [1]} | {field: [[number]] if field == "A" else [number]}
+    with pytest.raises(InputError, match=f"{number}; accepted: an integer that a float holds"):
+        load(tmp_path, [entry])
+    assert load(tmp_path, [{"A": [[2**63]], "d": [2**60], "Y": [1]}]).relations[0].A[0, 0] == 2**63
+
+
+def test_offsets_keep_their_turns(tmp_path):
+    far = load(tmp_path, [{"A": [[1]], "d": [2e15 * np.pi], "Y": [1]}]).relations[0]
+    assert far.unwrapped_d[0] == 2e15 * np.pi
+    assert far.d[0] == pytest.approx(-0.4769, abs=1e-4)  # that float is no whole number of turns
+
+
+def test_a_basis_of_no_frequencies_is_refused(tmp_path):
+    entry = {"A": [[1]], "d": [0], "Y": [1]}
+    for number in (1e308, 2e6, 0.5):
+        with pytest.raises(InputError, match=r"basis .* accepted: linearly independent rows"):
+            load(tmp_path, {"basis": [[number]], "relations": [entry]})
+
+
 def test_learned_relations_with_real_matrices_and_unknown_bounds(tmp_path):
     learned = SymmetryRelation([[-1.001, 0.0], [2.0, 0.99]], [0.1, 0.2], [1, -1])
     document = relations_document([learned], JOINTS, extra=[{"support": 7}])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import mpmath
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -188,9 +191,84 @@ def test_float_potentials_are_judged_up_to_rounding(two_link, monkeypatch):
         assert verify_relation(relation, gravity, 0.0).passed
 
 
+HOSTILE = {
+    "d of 1e15 rounded turns": ("2r", np.eye(2), [2 * np.pi * 1e15, 0], [1, 1]),
+    "an entry of 1e45": ("2r", [[1, 0], [1e45, 1]], [0, 0], [1, 1]),
+    "entries of 2^63": ("3r", [[1, 0, 2.0**63], [0, 1, 2.0**63], [0, 0, 1]], [0, 0, 0], [1, 1, 1]),
+    "the largest float": ("2r", [[1e308, 1e308], [1e308, 1e308]], [1e308, 1e308], [1, 1]),
+    "denormal entries": ("2r", [[5e-324, 0], [0, 1]], [0, 0], [1, 1]),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_extreme_lies_are_refuted_where_they_fail(arms, name):
+    arm, A, d, Y = HOSTILE[name]
+    lie, gravity = SymmetryRelation(A, d, Y), arms[arm].gravity
+    verdict = verify_relation(lie, gravity, 1e-9)
+    assert verdict.status is Status.REFUTED
+    with mpmath.workdps(700):  # forward in q, with all digits
+        q = [mpmath.mpf(x) for x in verdict.counterexample.tolist()]
+        image = [
+            mpmath.fsum(mpmath.mpf(a) * x for a, x in zip(row, q, strict=True)) + mpmath.mpf(t)
+            for row, t in zip(np.array(A, dtype=float).tolist(), np.array(d).tolist(), strict=True)
+        ]
+        turned = [float(x - 2 * mpmath.pi * mpmath.nint(x / (2 * mpmath.pi))) for x in image]
+    error = gravity.torque(turned) - Y * gravity.torque(verdict.counterexample)
+    assert np.abs(error).max() > 1e-9
+    assert verdict.worst_error < 50
+
+
+@pytest.mark.parametrize("row", [[1.0, 0.3], [1.0, 1e45], [0.25, 1e-300], [1e308, 5e-324]])
+def test_what_joints_without_torque_do_does_not_matter(row):
+    tree = load_robot("2r").tree
+    upright = replace(tree, axes=np.array([[0.0, 0.0, -1.0], [0.0, -1.0, 0.0]]))
+    gravity = GravityModel(upright)
+    relation = SymmetryRelation([row, [0.0, -1.0]], [1e300, 0.0], [-1, 1])
+    assert verify_relation(relation, gravity, 0.0).status is Status.PROVED
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-30, 1e-9, 1.0, 1e9, 1e300])
+def test_verdicts_do_not_depend_on_the_size_of_the_arm(two_link, scale):
+    tree = two_link.gravity.tree
+    gravity = GravityModel(replace(tree, masses=tree.masses * scale))
+    for true in two_link.group:
+        assert verify_relation(true, gravity, 0.0).status is Status.PROVED
+    lie = SymmetryRelation(np.eye(2), [1e-9, 0.0], [1, 1])
+    verdict = verify_relation(lie, gravity, 0.0)
+    assert verdict.status is Status.REFUTED
+    assert verdict.worst_error == pytest.approx(24.525e-9 * scale, rel=1e-6)
+    assert verify_relation(lie, gravity, 24.6e-9 * scale).status is Status.BOUNDED
+
+
+def test_a_balanced_arm_is_judged_by_what_it_feels():
+    """Hardly any torque is left of masses and lengths; rounding of the recursion is not."""
+    tree = load_robot("pendulum").tree
+    axis = np.array([[1.1e-5, 0.0, 1.0]])
+    axis /= np.linalg.norm(axis)
+    down = replace(tree, axes=axis, levers=np.array([[0.125, 0.03, 0.25]]))
+    gravity = GravityModel(down)
+    size = np.abs(gravity.torque(np.linspace(-3, 3, 99)[:, None])).max()
+    assert size < 1e-4
+    for true in primary_symmetries(gravity.potential):
+        assert verify_relation(true, gravity, 0.0).status is Status.PROVED
+    near = SymmetryRelation([[1]], [1e-9], [1])
+    assert verify_relation(near, gravity, 1e-12).status is Status.BOUNDED
+    assert verify_relation(near, gravity, 1e-16).status is Status.REFUTED
+
+
+def test_a_real_matrix_is_bounded_in_a_box_that_the_claim_names(two_link):
+    near = SymmetryRelation([[1 + 1e-6, 0], [0, 1]], [0, 0], [1, 1])
+    verdict = verify_relation(near, two_link.gravity, 1e-3)
+    assert verdict.status is Status.BOUNDED
+    assert verdict.claim.endswith(", for q within a turn around zero")
+    assert verify_relation(near, two_link.gravity, 1e3).claim.endswith("tau' = tau")
+
+
 def test_relations_are_written_readably():
     relation = SymmetryRelation([[0, 0], [1.5, -1]], [np.pi / 2, -0.25], [1, 1])
     assert describe_relation(relation) == "q1' = pi/2, q2' = 1.5 q1 - q2 - 0.25, tau' = tau"
+    almost = SymmetryRelation([[1 + 1e-12]], [0], [1])
+    assert describe_relation(almost).startswith("q1' = 1.00000000000")
     still = SymmetryRelation(np.zeros((1, 1)), [0], [-1])
     assert describe_relation(still) == "q1' = 0, tau1' = -tau1"
 
