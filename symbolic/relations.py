@@ -122,8 +122,8 @@ class SymmetryGroup(Sequence[SymmetryRelation]):
 
     def __getitem__(self, index: Any) -> Any:
         numbers = range(self.order)[index]
-        if self.order <= LARGEST_LIST:
-            return self.listed()[index]
+        if self._members is not None:
+            return self._members[index]
         if isinstance(numbers, range):
             return tuple(self.relation(i) for i in numbers)
         return self.relation(numbers)
