@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symbolic.errors import InputError
-from symbolic.exact_symmetries import exact_symmetries, specialised
+from symbolic.exact_symmetries import (
+    exact_symmetries,
+    frequency_blocks,
+    restricted,
+    specialised,
+)
+from symbolic.product_group import ProductGroup
 from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
 from symbolic.residuals import residual_bound
 from symbolic.reynolds import joint_offsets, symmetric_part_error
+from symbolic.single_thread import single_thread
 from symbolic.support import Support
 from symbolic.trigonometric import TrigonometricPolynomial
 
@@ -21,6 +29,8 @@ IntMatrix = NDArray[np.int64]
 NEAR = 0.15
 """Offsets within this [rad] are candidates for one and the same group element."""
 MOST_THRESHOLDS = 64
+MOST_GROUPS = 256
+"""Products of the blocks' maximal groups that are reported, from the largest on."""
 SAME_AS_EXACT = 1e-9
 """A fitted offset this near to an exact one is that one [rad]."""
 
@@ -45,15 +55,16 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
     Raises
     ------
     InputError
-        If the tolerance is not a positive number.
+        If the tolerance is not a positive number, or there is too much to try.
 
     Notes
     -----
     For a closed candidate group with offsets fitted jointly, the nearest symmetric potential is
     its Reynolds average; twice the bound on the change of the torque bounds every relation of
-    the group. Candidates come from the supports above every amplitude threshold. The groups
-    found are correct and grow with the tolerance; that none is missed is a good heuristic, not
-    a theorem.
+    the group. Blocks of joints that share no frequency are solved one by one (of the products of
+    their groups, `MOST_GROUPS` are returned). Candidates come from the supports above every
+    amplitude threshold. The groups found are correct and grow with the tolerance; that none is
+    missed is a good heuristic, not a theorem.
 
     References
     ----------
@@ -69,6 +80,34 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
     """
     if not (np.isfinite(tolerance) and tolerance > 0):
         raise InputError("symmetries", "tolerance", tolerance, "a number > 0 [N m]")
+    with single_thread():
+        return [scored.group for scored in _maximal(potential, tolerance)]
+
+
+def _maximal(potential: TrigonometricPolynomial, tolerance: float) -> list[_Scored]:
+    """Return the maximal groups with their errors, block by block.
+
+    The average over a group, restricted to one block, is the average over what the group does to
+    that block; so maximal groups are products of maximal groups of the blocks.
+    """
+    blocks = frequency_blocks(potential.frequencies)
+    if len(blocks) < 2:
+        return _maximal_of_block(potential, tolerance)
+    found = []
+    for joints in blocks:
+        rows = np.flatnonzero(np.any(potential.frequencies[:, joints], axis=1))
+        found.append(_maximal_of_block(restricted(potential, rows, joints), tolerance))
+    products = [
+        _Scored(
+            ProductGroup(potential.n, blocks, [scored.group for scored in choice]),
+            max(scored.error for scored in choice),
+        )
+        for choice in itertools.islice(itertools.product(*found), MOST_GROUPS)
+    ]
+    return sorted(products, key=lambda scored: (-scored.group.order, scored.error))
+
+
+def _maximal_of_block(potential: TrigonometricPolynomial, tolerance: float) -> list[_Scored]:
     numeric = specialised(potential)
     order = np.argsort(-numeric.amplitudes(), kind="stable")
     numeric = TrigonometricPolynomial(
@@ -97,7 +136,7 @@ def maximal_groups(potential: TrigonometricPolynomial, tolerance: float) -> list
         if not any(_contained(scored.group, other.group) for other in maximal):
             maximal = [m for m in maximal if not _contained(m.group, scored.group)]
             maximal.append(scored)
-    return [scored.group for scored in maximal]
+    return maximal
 
 
 @dataclass(frozen=True, eq=False)

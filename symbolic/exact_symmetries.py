@@ -49,11 +49,11 @@ def exact_symmetries(
         rows = np.flatnonzero(kept)
         own = np.any(numeric.frequencies[rows][:, joints], axis=1)
         rows = rows[own]
-        part = _restricted(numeric, rows, joints)
+        part = restricted(numeric, rows, joints)
         support = Support.of(part, np.ones(len(rows), dtype=bool))
         proof = None
         if potential.cos.dtype == object:
-            proof = PhaseProof(_restricted(potential, rows, joints), support, complete)
+            proof = PhaseProof(restricted(potential, rows, joints), support, complete)
         groups.append(BlockGroup(support, classes[own], 16 * limit, proof, part))
     return ProductGroup(numeric.n, blocks, groups, numeric)
 
@@ -73,7 +73,7 @@ def frequency_blocks(K: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     return sorted(blocks, key=lambda joints: int(joints[0]))
 
 
-def _restricted(
+def restricted(
     potential: TrigonometricPolynomial, rows: NDArray[np.int64], joints: NDArray[np.int64]
 ) -> TrigonometricPolynomial:
     """Return some terms of a potential as one of the joints that they have."""

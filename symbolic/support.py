@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symbolic.errors import InputError
 from symbolic.integer_lattice import (
     GeneratedLattice,
     dependency_components,
@@ -21,6 +22,10 @@ from symbolic.symmetry_relation import SymmetryRelation, cleaned, lifted, wrap
 from symbolic.trigonometric import TrigonometricPolynomial
 
 Array = NDArray[np.float64]
+
+
+MOST_WORK = 8_000_000
+"""Torque signs times frequencies that are tried one by one; minutes, and nobody waits longer."""
 
 
 def amplitude_classes(amplitude: Array, tolerance: float) -> NDArray[np.int64]:
@@ -95,12 +100,20 @@ class Support:
         both = np.concatenate([self.K, -self.K])
         label = np.concatenate([classes, classes])
         base = 2 * int(np.abs(both).max(initial=0)) + 1
+        most = MOST_WORK // max(1, len(self.K))
         found: list[NDArray[np.int64]] = []
         ones = np.ones(n, dtype=np.int64)
 
         def extend(Y: NDArray[np.int64], own: NDArray, image: NDArray, joint: int) -> None:
             if joint == n:
                 found.append(Y)
+                if len(found) > most:
+                    raise InputError(
+                        "symmetries with a tolerance",
+                        "torque signs to try",
+                        f"more than {most}",
+                        "fewer joints that share frequencies (--lock some), or tolerance 0",
+                    )
                 return
             column = both[:, joint]
             for sign in (1, -1) if np.any(column) else (1,):

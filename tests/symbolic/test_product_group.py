@@ -1,5 +1,6 @@
 """Groups as products: the same relations as enumeration gives, without enumerating."""
 
+import itertools
 import math
 
 import numpy as np
@@ -7,6 +8,8 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from symbolic import support
+from symbolic.approximate_symmetries import maximal_groups
 from symbolic.errors import InputError
 from symbolic.exact_symmetries import frequency_blocks
 from symbolic.potential import derive_potential
@@ -188,3 +191,36 @@ def test_blocks_are_the_classes_of_joints_that_share_frequencies(rows):
             hit = [k for k in K if set(np.flatnonzero(k).tolist()) & reached]
             reached |= {int(j) for k in hit for j in np.flatnonzero(k)}
         assert reached == set(block.tolist())
+
+
+@given(
+    st.lists(
+        st.sampled_from([two_r(), two_r(3.0, 2.98), three_r(2.0, 2.01)]), min_size=2, max_size=3
+    ),
+    st.permutations(range(9)),
+    st.floats(0.01, 0.1),
+)
+@settings(max_examples=8)
+def test_approximate_groups_of_separate_arms_are_products_too(parts, shuffle, tolerance):
+    whole, _ = side_by_side(parts, shuffle)
+    alone = [maximal_groups(part, tolerance) for part in parts]
+    groups = maximal_groups(whole, tolerance)
+    assert groups[0].order == math.prod(found[0].order for found in alone)
+    assert len(groups) == math.prod(len(found) for found in alone)
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (50, whole.n))
+    torque = whole.gradient(q)
+    for relation in [*groups[0].generators, groups[0][groups[0].order - 1]]:
+        error = np.abs(whole.gradient(relation.configuration(q)) - relation.torque(torque))
+        assert np.all(error <= relation.bound + 1e-12)
+        assert np.all(relation.bound <= tolerance + 1e-12)
+
+
+def test_a_tolerance_with_too_much_to_try_is_refused(monkeypatch):
+    monkeypatch.setattr(support, "MOST_WORK", 40)
+    every = itertools.product([0, 1, -1], repeat=3)
+    K = np.array([k for k in every if next(filter(None, k), 0) == 1])
+    rng = np.random.default_rng(0)
+    U = TrigonometricPolynomial(K, rng.normal(size=len(K)), rng.normal(size=len(K)))
+    with pytest.raises(InputError, match="torque signs to try is more than 3"):
+        maximal_groups(U, 0.1)
+    assert primary_symmetries(U).order == 1
