@@ -60,7 +60,7 @@ def killed(child, path, enough):
 
 @pytest.mark.parametrize(
     "arguments",
-    [["discover", "2r"], ["run", "2r", "--samples", 200]],
+    [["discover", "2r"], ["run", "2r", "--samples", 200, "--tolerance", 30]],
     ids=["discover", "run"],
 )
 def test_killed_commands_end_as_uninterrupted_ones(arguments, tmp_path):
