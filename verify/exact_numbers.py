@@ -52,7 +52,7 @@ def exact_matrix(values: ArrayLike) -> list[list[Exact]]:
     return [exact_vector(row) for row in np.array(values, dtype=object)]
 
 
-def times(rows: Iterable[Sequence[Exact]], matrix: list[list[Exact]]) -> list[tuple[Exact, ...]]:
+def times(rows: Sequence[Sequence[Exact]], matrix: list[list[Exact]]) -> list[tuple[Exact, ...]]:
     """Return the products ``row @ matrix``, exactly and without overflow.
 
     Examples
@@ -60,6 +60,12 @@ def times(rows: Iterable[Sequence[Exact]], matrix: list[list[Exact]]) -> list[tu
     >>> times([(1, 1)], [[2**63, 0], [2**63, fmpq(1, 2)]])
     [(18446744073709551616, 1/2)]
     """
+    entries = [x for row in matrix for x in row]
+    if all(isinstance(x, int) for row in (entries, *rows) for x in row):
+        largest = max((abs(x) for row in rows for x in row), default=0)
+        if max(largest, 1) * max(sum(map(abs, entries)), 1) < 2**62:  # neither does a sum
+            factor = np.array(matrix, dtype=np.int64)
+            return [tuple(row) for row in (np.array(rows, dtype=np.int64) @ factor).tolist()]
     columns = list(zip(*matrix, strict=True))
     return [tuple(exact(_dot(row, column)) for column in columns) for row in rows]
 
