@@ -18,6 +18,7 @@ from symbolic.body_checks import check_body
 from symbolic.chosen_part import chosen_part, chosen_part_of_model, part_as_pinocchio_reads
 from symbolic.errors import InputError
 from symbolic.kinematic_tree import KinematicTree
+from symbolic.mass_plausibility import bodies, check_masses, moving_links
 from symbolic.robot_options import RobotOptions
 from symbolic.snap_effect import torque_difference_bound
 from symbolic.snapped_bodies import snap_body, snap_urdf
@@ -82,6 +83,9 @@ class Robot:
         Fingerprint of ``model`` (sha256, hex): the same in each run and on each machine.
     options : RobotOptions
         What it was loaded with.
+    warnings : tuple of str
+        What is doubtful about its masses, one line each (`check_masses`); nothing for built-in
+        robots.
     """
 
     name: str
@@ -96,6 +100,7 @@ class Robot:
     tree: KinematicTree
     digest: str
     options: RobotOptions
+    warnings: tuple[str, ...] = ()
 
     @property
     def n(self) -> int:
@@ -228,6 +233,7 @@ def load_robot(
         name = where = options.spec
         source = chosen_part_of_model(spec, options, where)
         body = as_read = _checked_body(source, where)
+        links = bodies(as_read)
         if options.snap:
             body, snaps = snap_body(as_read)
     else:
@@ -236,8 +242,11 @@ def load_robot(
         name = name or urdf.name or Path(where).stem
         source = part_as_pinocchio_reads(_pinocchio_model(urdf, where), urdf, where)
         body = as_read = _checked_body(source, where)
+        links = moving_links(urdf)
         if options.snap:
             body, snaps = snap_urdf(urdf, as_read.joint_names)
+    known = not isinstance(spec, pin.Model) and options.spec in _BUILTIN
+    warnings = () if known else check_masses(links, body, where, options.allow_massless)
     bound = torque_difference_bound(as_read.tree(), body.tree()) if snaps else np.zeros(body.n)
     return Robot(
         name=name,
@@ -252,6 +261,7 @@ def load_robot(
         tree=body.tree(),
         digest=body.digest(),
         options=options,
+        warnings=warnings,
     )
 
 

@@ -10,7 +10,7 @@ import typer
 
 from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, say
-from isotorque.cli.robot_options import RobotName, about, takes_robot
+from isotorque.cli.robot_options import RobotName, about, load, takes_robot
 
 
 @takes_robot()
@@ -36,9 +36,8 @@ def derive(
     from symbolic.gravity_c import gravity_c
     from symbolic.gravity_casadi import gravity_casadi
     from symbolic.gravity_views import gravity_latex, gravity_sympy, gravity_text
-    from symbolic.robots import load_robot
 
-    loaded = load_robot(robot)
+    loaded = load(robot, quiet)
     start = time.perf_counter()
     gravity = GravityModel(loaded)
     seconds = time.perf_counter() - start

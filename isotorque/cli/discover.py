@@ -15,7 +15,7 @@ from isotorque.cli.options import (
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, row
-from isotorque.cli.robot_options import RobotName, about, takes_robot
+from isotorque.cli.robot_options import RobotName, about, load, takes_robot
 from isotorque.cli.run_options import Confirm, NMin
 
 
@@ -47,6 +47,7 @@ def discover(
 
     arm = ArmOptions(seed, physics, engine, settle, angle_noise, torque_noise, encoder_step)
     options = RunOptions(robot, arm, n_min, confirm=confirm)
+    load(robot, quiet)
     output_directory(out)
     with progress_bars(quiet) as progress:
         found = discover_symmetries(options, out, progress)

@@ -8,7 +8,7 @@ import typer
 
 from isotorque.cli.options import Json, Quiet, numbers
 from isotorque.cli.output import emit_json, row
-from isotorque.cli.robot_options import RobotName, about, takes_robot
+from isotorque.cli.robot_options import RobotName, about, load, takes_robot
 
 
 @takes_robot()
@@ -29,10 +29,9 @@ def domain(
     """Describe a fundamental domain: exactly one configuration of each symmetric set."""
     from symbolic.domain import FundamentalDomain
     from symbolic.gravity import GravityModel
-    from symbolic.robots import load_robot
     from symbolic.symmetries import primary_symmetries
 
-    loaded = load_robot(robot)
+    loaded = load(robot, quiet)
     at = None if center is None else numbers(center, "--center", loaded.n)
     group = primary_symmetries(GravityModel(loaded).potential)
     bcts = FundamentalDomain(group, at)

@@ -10,7 +10,7 @@ import typer
 
 from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, say
-from isotorque.cli.robot_options import named, takes_robot
+from isotorque.cli.robot_options import about, load, named, takes_robot
 from symbolic.robot_options import RobotOptions
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def export(
             raise InputError("command line", f"options beside {saved}", found, accepted)
         exported = _learned(saved)
     else:
-        exported = _analytic(model)
+        exported = _analytic(model, quiet)
     written: dict[str, Path] = {}
     if c is not None:
         write_whole(c, exported.c_source())
@@ -90,8 +90,7 @@ def export(
         emit_json(
             {
                 "model": model.spec,
-                "robot": exported.robot,
-                "robot_options": exported.options,
+                **exported.about,
                 "joints": exported.joints,
                 "kind": exported.form.KIND,
                 **{kind: str(path) for kind, path in written.items()},
@@ -113,9 +112,9 @@ class _Export:
     digest: str
     joints: tuple[str, ...]
     error: float
-    options: dict[str, Any]
+    about: dict[str, Any]
     gravity: Any = None
-    about: tuple[str, ...] = ()
+    comment: tuple[str, ...] = ()
 
     def c_source(self) -> str:
         if self.gravity is not None:
@@ -124,7 +123,7 @@ class _Export:
             return gravity_c(self.gravity)
         from learning.export.c_export import c_source
 
-        return c_source(self.form, self.about, self.joints)
+        return c_source(self.form, self.comment, self.joints)
 
     def casadi_function(self) -> Any:
         if self.gravity is not None:
@@ -143,7 +142,7 @@ def _learned(path: Path) -> _Export:
 
     saved = load_model(path)
     form = torque_form(saved.learner)
-    about = (
+    comment = (
         f"Inverse statics of {saved.robot}, learned and written by Isotorque.",
         f"Learner {type(saved.learner).__name__}; robot {saved.digest}.",
     )
@@ -153,25 +152,22 @@ def _learned(path: Path) -> _Export:
         saved.digest,
         saved.joint_names,
         largest_difference(form, saved.learner.predict),
-        saved.notes.get("robot_options", {}),
-        about=about,
+        {"robot": saved.robot, "robot_options": saved.notes.get("robot_options", {})},
+        comment=comment,
     )
 
 
-def _analytic(options: RobotOptions) -> _Export:
+def _analytic(options: RobotOptions, quiet: bool) -> _Export:
     from learning.export.torque_form import largest_difference
     from learning.export.waves import Waves
     from symbolic.gravity import GravityModel
-    from symbolic.robots import load_robot
 
-    robot = load_robot(options)
+    robot = load(options, quiet)
     gravity = GravityModel(robot)
     potential = gravity.significant_potential.to_float()
     form = Waves.of_potential(potential.frequencies, potential.cos, potential.sin)
     error = largest_difference(form, gravity.torque)
-    return _Export(
-        form, robot.name, robot.digest, robot.joint_names, error, options.as_json(), gravity
-    )
+    return _Export(form, robot.name, robot.digest, robot.joint_names, error, about(robot), gravity)
 
 
 def _keep_others(path: Path) -> None:

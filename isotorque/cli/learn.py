@@ -20,7 +20,7 @@ from isotorque.cli.options import (
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, row, say
-from isotorque.cli.robot_options import RobotName, takes_robot
+from isotorque.cli.robot_options import RobotName, load, takes_robot
 from isotorque.cli.run_options import (
     LearnAnyway,
     LearnerName,
@@ -91,9 +91,11 @@ def learn(
     from isotorque.runs.lattice_learning import learn_from_lattice
     from isotorque.runs.learn_options import learn_options
     from isotorque.runs.learned_model import model_of_run
+    from isotorque.runs.recorded_robot import as_recorded
     from isotorque.runs.run_options import LATTICE
 
     given = _given(context)
+    load(as_recorded(robot, out), quiet)
     if data is not None:
         _refuse(given, ("strategy", "samples", *SIMULATED), "--data")
         recording = DataOptions(robot, data, learner, symmetries, drop_outliers, seed)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from isotorque.cli.output import say
 from symbolic.errors import InputError
 from symbolic.robot_options import RobotOptions
 
@@ -122,6 +123,17 @@ def _refuse(options: RobotOptions, argument: str) -> None:
         )
 
 
+def load(options: RobotOptions, quiet: bool) -> Robot:
+    """Load a robot; say on standard error what is doubtful about it."""
+    from symbolic.robots import load_robot
+
+    robot = load_robot(options)
+    for warning in robot.warnings:
+        say(f"warning: {warning}", quiet)
+    return robot
+
+
 def about(robot: Robot) -> dict[str, Any]:
     """Return what every JSON document says of its robot."""
-    return {"robot": robot.name, "robot_options": robot.options.as_json()}
+    options, warnings = robot.options.as_json(), list(robot.warnings)
+    return {"robot": robot.name, "robot_options": options, "warnings": warnings}

@@ -14,7 +14,7 @@ from isotorque.cli.options import (
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, plain, say
-from isotorque.cli.robot_options import RobotName, takes_robot
+from isotorque.cli.robot_options import RobotName, load, takes_robot
 from isotorque.cli.run_options import (
     ChosenPhysics,
     Confirm,
@@ -81,6 +81,7 @@ def run(
         learn_anyway=learn_anyway,
         tolerance=tolerance,
     )
+    load(robot, quiet)
     if options.led_by_need:
         words = "cannot hold itself within its limits: it is led and held (guided)"
         say(f"{robot.spec} {words}", quiet)

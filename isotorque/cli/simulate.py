@@ -19,7 +19,7 @@ from isotorque.cli.options import (
     numbers,
 )
 from isotorque.cli.output import emit_json, row
-from isotorque.cli.robot_options import RobotName, about, takes_robot
+from isotorque.cli.robot_options import RobotName, about, load, takes_robot
 
 
 @takes_robot()
@@ -51,9 +51,8 @@ def simulate(
     from learning.physics import MeasurementNoise
     from learning.simulation.simulated_arm import SimulatedArm
     from learning.torque_limits import check_torque
-    from symbolic.robots import load_robot
 
-    loaded = load_robot(robot)
+    loaded = load(robot, quiet)
     tau = numbers(torque, "--torque", loaded.n)
     check_torque(loaded.name, "--torque", tau, loaded.effort, loaded.joint_names)
     q0 = None if start is None else numbers(start, "--from", loaded.n)

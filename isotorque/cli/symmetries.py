@@ -9,7 +9,7 @@ import typer
 
 from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, row
-from isotorque.cli.robot_options import RobotName, about, takes_robot
+from isotorque.cli.robot_options import RobotName, about, load, takes_robot
 
 LISTED = 64
 """Groups of at most this order are listed without being asked."""
@@ -40,11 +40,10 @@ def symmetries(
     from symbolic.approximate_symmetries import maximal_groups
     from symbolic.gravity import GravityModel
     from symbolic.relations import factor_structure, group_structure
-    from symbolic.robots import load_robot
     from symbolic.symmetries import primary_symmetries
     from verify.relation_files import relations_document
 
-    loaded = load_robot(robot)
+    loaded = load(robot, quiet)
     start = time.perf_counter()
     gravity = GravityModel(loaded)
     maximal = maximal_groups(gravity.potential, tolerance) if tolerance > 0 else []

@@ -9,7 +9,7 @@ import typer
 
 from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json
-from isotorque.cli.robot_options import about, named, takes_robot
+from isotorque.cli.robot_options import about, load, named, takes_robot
 from symbolic.robot_options import RobotOptions
 
 
@@ -54,9 +54,8 @@ def verify(
     from isotorque.runs.recorded_robot import as_recorded
     from isotorque.verification import verify_path
     from symbolic.gravity import GravityModel
-    from symbolic.robots import load_robot
 
-    loaded = load_robot(as_recorded(robot, what))
+    loaded = load(as_recorded(robot, what), quiet)
     gravity = GravityModel(loaded)
     verdicts = verify_path(what, loaded, gravity, tolerance)
     passed = all(verdict.passed for verdict in verdicts)

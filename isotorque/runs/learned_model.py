@@ -66,6 +66,7 @@ class LearnedModel:
         return {
             "robot": self.robot.name,
             "robot_options": self.robot.options.as_json(),
+            "warnings": list(self.robot.warnings),
             **self.choices,
             "samples": self.samples,
             "discovery_motions": self.discovery_motions,

@@ -42,7 +42,7 @@ def error_beyond_bound(robot: Robot, rng: np.random.Generator, samples: int = 20
 def test_gravity_is_the_files_up_to_the_snap_bound(tmp_path_factory, urdf, seed):
     path = tmp_path_factory.mktemp("urdf") / "some arm.urdf"
     path.write_text(urdf_text(urdf))
-    robot = load_robot(path)
+    robot = load_robot(path, allow_massless=True)
     assert error_beyond_bound(robot, np.random.default_rng(seed)) < 1e-12
     assert list(robot.joint_names) == list(robot.source_model.names)[1:]
     assert robot.model.nq == robot.model.nv == robot.n
@@ -54,7 +54,10 @@ def test_gravity_is_the_files_up_to_the_snap_bound(tmp_path_factory, urdf, seed)
 def test_a_file_loaded_twice_is_the_same_bit_for_bit(tmp_path_factory, urdf):
     path = tmp_path_factory.mktemp("urdf") / "arm.urdf"
     path.write_text(urdf_text(urdf))
-    first, second = load_robot(path), load_robot(str(path))
+    first, second = (
+        load_robot(path, allow_massless=True),
+        load_robot(str(path), allow_massless=True),
+    )
     assert first.digest == second.digest
     assert first.model == second.model
     np.testing.assert_array_equal(first.snap_bound, second.snap_bound)
@@ -66,8 +69,8 @@ def test_a_file_loaded_twice_is_the_same_bit_for_bit(tmp_path_factory, urdf):
 def test_the_model_of_a_robot_is_a_robot_with_nothing_left_to_snap(tmp_path_factory, urdf):
     path = tmp_path_factory.mktemp("urdf") / "arm.urdf"
     path.write_text(urdf_text(urdf))
-    robot = load_robot(path)
-    again = load_robot(robot.model)
+    robot = load_robot(path, allow_massless=True)
+    again = load_robot(robot.model, allow_massless=True)
     assert again.snaps == ()
     assert again.digest == robot.digest
     assert again.model == robot.model
@@ -75,7 +78,7 @@ def test_the_model_of_a_robot_is_a_robot_with_nothing_left_to_snap(tmp_path_fact
 
 @given(urdfs(angle=st.one_of(rounded_right_angles, angles)), st.integers(0, 2**32))
 def test_a_model_is_loaded_like_its_file(urdf, seed):
-    robot = load_robot(pin.buildModelFromXML(urdf_text(urdf)))
+    robot = load_robot(pin.buildModelFromXML(urdf_text(urdf)), allow_massless=True)
     assert error_beyond_bound(robot, np.random.default_rng(seed)) < 1e-12
 
 
@@ -83,7 +86,7 @@ def test_a_model_is_loaded_like_its_file(urdf, seed):
 def test_not_snapped_is_untouched(tmp_path_factory, urdf, seed):
     path = tmp_path_factory.mktemp("urdf") / "arm.urdf"
     path.write_text(urdf_text(urdf))
-    robot = load_robot(path, snap=False)
+    robot = load_robot(path, snap=False, allow_massless=True)
     assert robot.snaps == ()
     assert error_beyond_bound(robot, np.random.default_rng(seed)) < 1e-14
     for i in range(robot.n):
@@ -96,7 +99,7 @@ def test_not_snapped_is_untouched(tmp_path_factory, urdf, seed):
 
 @given(urdfs(), st.integers(0, 2**32))
 def test_source_configurations_in_batches(urdf, seed):
-    robot = load_robot(pin.buildModelFromXML(urdf_text(urdf)))
+    robot = load_robot(pin.buildModelFromXML(urdf_text(urdf)), allow_massless=True)
     q = np.random.default_rng(seed).uniform(-7, 7, (2, 3, robot.n))
     batch = robot.source_configuration(q)
     assert batch.shape == (2, 3, robot.source_model.nq)

@@ -23,6 +23,11 @@ ARM = f"""<robot name="arm">{LINK.format(name="base", mass=1)}{LINK.format(name=
     {JOINT}</robot>"""
 
 
+def edited(old: str, new: str) -> str:
+    assert old in ARM, old
+    return ARM.replace(old, new, 1)
+
+
 @given(urdfs())
 def test_a_description_written_and_read_again_is_the_same(urdf):
     again = parse_urdf(urdf_text(urdf).encode(), "again")
@@ -51,17 +56,39 @@ def test_what_has_no_bearing_on_gravity_is_left_out():
     assert parse_urdf(ARM.replace("</robot>", extra).encode(), "a") == parse_urdf(ARM.encode(), "a")
 
 
+READ = {
+    "default namespace": edited("<robot ", '<robot xmlns="http://www.ros.org" '),
+    "undeclared prefix": edited("</robot>", "<gazebo><sensor:camera name='c'/></gazebo></robot>"),
+    "undeclared prefix of an attribute": edited("<robot ", '<robot x:y="z" '),
+    "effort and velocity -1": edited('effort="1" velocity="1"', 'effort="-1" velocity="-1"'),
+    "numbers with spaces": edited('xyz="0 0 1" rpy="0 0 0"', 'xyz=" 0  0 1.0 " rpy="0 0\t0\n"'),
+}
+
+
+@pytest.mark.parametrize("case", READ)
+def test_what_files_in_use_contain_is_read(case):
+    urdf = parse_urdf(READ[case].encode(), "some.urdf")
+    usual = parse_urdf(ARM.encode(), "some.urdf")
+    assert urdf.links == usual.links
+    assert pin.buildModelFromXML(urdf_text(urdf)).nq == 1
+    (joint,) = urdf.joints
+    assert joint.xyz == usual.joints[0].xyz
+
+
+def test_a_mass_without_tensor_and_limits_without_room_are_read():
+    tensor = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>'
+    urdf = parse_urdf(ARM.replace(tensor, "").encode(), "a")
+    assert [(link.mass, any(link.products)) for link in urdf.links] == [(1.0, False), (2.0, False)]
+    joint = parse_urdf(ARM.replace('lower="-1"', 'lower="3"').encode(), "a").joints[0]
+    assert (joint.lower, joint.upper) == (3.0, 1.0)
+
+
 def test_a_fixed_joint_that_mimics_is_just_fixed():
     text = ARM.replace("</robot>", LINK.format(name="tip", mass=1)) + (
         '<joint name="tip_joint" type="fixed"><parent link="arm"/><child link="tip"/>'
         '<mimic joint="elbow"/></joint></robot>'
     )
     assert [joint.kind for joint in parse_urdf(text.encode(), "a").joints] == ["revolute", "fixed"]
-
-
-def edited(old: str, new: str) -> str:
-    assert old in ARM, old
-    return ARM.replace(old, new)
 
 
 REFUSED = {
