@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from importlib import metadata
 from pathlib import Path
 
@@ -140,3 +141,22 @@ def test_the_xarm7_is_symmetric_only_when_snapped():
     assert np.all(snapped.snap_bound <= exact + 1e-12)
     q = np.random.default_rng(0).uniform(-np.pi, np.pi, (2000, 7))
     assert np.all(np.abs(difference.to_float().gradient(q)).max(axis=0) <= snapped.snap_bound)
+
+
+@pytest.mark.slow
+def test_robots_of_others_load_with_the_option_that_their_refusal_advises():
+    """Three files of the catalogue hold no moving joint; all others are robots."""
+    files = sorted(ROBOTS.glob("**/*.urdf"))
+    refused = []
+    for file in files:
+        try:
+            load_robot(file)
+        except InputError as error:
+            _, _, advice = str(error).partition("are locked: ")
+            if not advice:
+                refused.append(file.name)
+                continue
+            locked = [name for name in shlex.split(advice) if name != "--lock"]
+            assert load_robot(file, lock=locked).n >= 2
+    assert refused == ["quadrotor_base.urdf", "iris_simple.urdf", "ur3.urdf"]
+    assert len(files) - len(refused) >= 60
