@@ -91,7 +91,7 @@ def judge_run(run: RunOutcome) -> RunReport:
         model=_model(run),
         level_sets=_level_sets(run),
         verdicts=verdicts,
-        remarks=_led(run) + run.remarks,
+        remarks=_led(run) + run.remarks + run.robot.warnings,
     )
 
 
