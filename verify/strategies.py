@@ -132,7 +132,7 @@ def robots(
         planted=planted,
         massless=massless,
         continuous=continuous,
-    ).map(load_robot)
+    ).map(lambda model: load_robot(model, allow_massless=True))
 
 
 @dataclass(frozen=True, eq=False)
