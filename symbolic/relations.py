@@ -334,7 +334,8 @@ def _keys(Y: Array, A_sat: Array, whole: bool) -> list[bytes]:
     """Return what equal relations share: Y, and A_sat where it is integer."""
     rows = [Y.astype(np.int8)]
     if whole:
-        rows.append(np.round(A_sat).reshape(len(A_sat), -1).astype(np.int32).view(np.int8))
+        whole_numbers = np.round(A_sat).reshape(len(A_sat), A_sat.shape[1] * A_sat.shape[2]) + 0.0
+        rows.append(np.ascontiguousarray(whole_numbers).view(np.int8))
     return [row.tobytes() for row in np.ascontiguousarray(np.concatenate(rows, axis=1))]
 
 

@@ -97,3 +97,15 @@ def test_offsets_that_never_come_back_do_not_close():
     with pytest.raises(InputError, match="at least"):
         SymmetryGroup([])
     assert identity(3).is_identity
+
+
+@pytest.mark.parametrize("entry", [2.0**31, 1e45])
+def test_huge_entries_are_compared_without_a_warning(entry):
+    shear = SymmetryRelation([[1, entry], [0, 1]], [0, 0], [1, 1])
+    group = SymmetryGroup([identity(2), shear])
+    assert not group.is_closed
+    assert shear in group
+    assert group.index(identity(2)) == 0
+    trivial = SymmetryGroup([identity(2, np.zeros((0, 2), dtype=int))])
+    assert trivial.is_closed
+    assert trivial.generators == ()
