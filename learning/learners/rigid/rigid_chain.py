@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.base import RegressorMixin
 
 from learning.learners.rigid.chain_fit import ChainFit, fit_at, fit_chain
 from learning.learners.rigid.chain_parameters import ChainParameters, checked_parents, serial
@@ -20,12 +19,13 @@ from learning.learners.rigid.standard_errors import TorqueErrors
 from learning.learners.rigid.verdict import Verdict
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.saved_learner import SavedLearner
+from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
 
 Array = NDArray[np.float64]
 
 
-class RigidChain(RegressorMixin, SavedLearner):
+class RigidChain(TorqueRegressor, SavedLearner):
     """The torque of an arm of rigid links, geometry and masses unknown.
 
     Parameters
