@@ -9,6 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from learning.statistics.poses import Poses, group_poses
+from symbolic.errors import InputError
+
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
@@ -35,26 +38,32 @@ class HeldOut:
         Samples that stand out; no model was trained on them.
     folds : int
         Number of parts, each predicted by a model trained on the others.
+    poses : Poses
+        How the samples are grouped: those of one pose share a part, and a pose counts once.
     """
 
     errors: Array
     outliers: Flags
     folds: int
+    poses: Poses
 
     @property
     def rmse(self) -> float:
-        """Root mean square error of all samples [N m]."""
-        return float(np.sqrt(np.mean(self.errors**2)))
+        """Root mean square error, every pose counted once [N m]."""
+        return float(np.sqrt(np.mean(self.poses.means(self.errors**2))))
 
     @property
     def rmse_by_joint(self) -> Array:
         """The same joint by joint, (n,) [N m]."""
-        return np.asarray(np.sqrt(np.mean(self.errors**2, axis=0)))
+        return np.asarray(np.sqrt(np.mean(self.poses.means(self.errors**2), axis=0)))
 
     @property
     def rmse_of_others(self) -> float:
-        """Root mean square error of the samples that do not stand out [N m]."""
-        return float(np.sqrt(np.mean(self.errors[~self.outliers] ** 2)))
+        """The same without the samples that stand out [N m]; NaN where all do."""
+        others = self.poses.taken(~self.outliers)
+        if not others.count:
+            return float("nan")
+        return float(np.sqrt(np.mean(others.means(self.errors[~self.outliers] ** 2))))
 
     def worst(self, count: int) -> NDArray[np.int64]:
         """Numbers of the outliers that are farthest off, the worst first."""
@@ -69,6 +78,7 @@ def held_out(
     rng: np.random.Generator,
     *,
     folds: int = FOLDS,
+    poses: Poses | None = None,
 ) -> HeldOut:
     """Cross-validate a learner, and find samples that do not fit the others.
 
@@ -77,18 +87,28 @@ def held_out(
     make
         Returns a fresh learner (``fit``, ``predict``).
     q, torque : (m, n) arrays
-        Samples [rad], [N m]; m at least 2.
+        Samples [rad], [N m]; at least two poses.
     rng
-        Deals the samples into parts.
+        Deals the poses into parts.
     folds
-        Number of parts, at most m.
+        Number of parts, at most one per pose.
+    poses
+        Which samples were recorded in one pose; `group_poses` tells where it is not given.
 
     Returns
     -------
     HeldOut
 
+    Raises
+    ------
+    InputError
+        If all samples are of one pose: nothing can be held out.
+
     Notes
     -----
+    Samples of one pose are in one part, or the model would be asked for what it has seen. They
+    also count once, in the error and in what is usual among the errors.
+
     A sample stands out if the error of one of its torques is ``STRICT``: 9 times the median of that
     joint's errors, which for normal errors is 6 standard deviations, and 4 spreads above it on a
     logarithmic scale, where the spread is that of the upper quartile over the median; this allows
@@ -109,22 +129,24 @@ def held_out(
     ([7], 0.01)
     """
     samples, torques = np.asarray(q, dtype=float), np.asarray(torque, dtype=float)
-    count = len(samples)
-    folds = min(folds, count)
-    part = rng.permutation(count) % folds
-    outliers = np.zeros(count, dtype=bool)
+    poses = group_poses(samples) if poses is None else poses
+    if poses.count < 2:
+        raise InputError("held out", "number of poses", poses.count, "at least 2")
+    folds = min(folds, poses.count)
+    part = (rng.permutation(poses.count) % folds)[poses.label]
+    outliers = np.zeros(len(samples), dtype=bool)
     errors = _errors(make, samples, torques, part, outliers)
     for _ in range(ROUNDS):
-        suspects = outliers | _stand_out(errors, torques, SUSPECT)
+        suspects = outliers | _stand_out(errors, torques, poses, SUSPECT)
         if np.array_equal(suspects, outliers) or not _enough(~suspects, part):
             break
         fair = _errors(make, samples, torques, part, suspects)
-        found = _stand_out(fair, torques, STRICT)
+        found = _stand_out(fair, torques, poses, STRICT)
         if np.array_equal(found, outliers):
             break
         outliers = found
         errors = _errors(make, samples, torques, part, outliers)
-    return HeldOut(errors, outliers, folds)
+    return HeldOut(errors, outliers, folds, poses)
 
 
 def _enough(used: Flags, part: NDArray[np.int64]) -> bool:
@@ -142,8 +164,9 @@ def _errors(
     return errors
 
 
-def _stand_out(errors: Array, torque: Array, least: tuple[float, float]) -> Flags:
-    logs = np.log(np.maximum(np.abs(errors), _TINY))
+def _stand_out(errors: Array, torque: Array, poses: Poses, least: tuple[float, float]) -> Flags:
+    usual = np.sqrt(poses.means(errors**2)) if poses.repeated else np.abs(errors)
+    logs = np.log(np.maximum(usual, _TINY))
     middle, upper = np.quantile(logs, [0.5, 0.75], axis=0)
     far = np.maximum(least[0] * (upper - middle), np.log(least[1]))
     bound = np.exp(np.minimum(middle + far, 700.0))

@@ -134,6 +134,8 @@ def _print_learned(learned: LearnedSymmetries, document: dict[str, Any]) -> None
         )
     for entry in learned.contradicted:
         print(f"pairs suggest, other samples contradict: {entry.relation}")
+    if learned.note:
+        print(learned.note)
     if learned.missing:
         print(f"missing: {learned.missing}")
 
@@ -149,5 +151,6 @@ def _print_judged(judged: tuple[JudgedCandidate, ...], source: str) -> None:
         known = "" if math.isnan(found.p_value) else f", p = {found.p_value:.3g}"
         if math.isfinite(found.relation.bound.max(initial=0.0)):
             known += f", wrong by at most {row(found.relation.bound, 3)} N m"
-        reason = f"; needs {found.reason}" if found.reason else ""
+        joined = "needs " if kind.startswith("untestable") else ""
+        reason = f"; {joined}{found.reason}" if found.reason else ""
         print(f"  {found.relation}  [{kind}{known}{reason}]")

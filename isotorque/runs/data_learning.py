@@ -75,10 +75,12 @@ class DataOptions:
         if self.learner is not None:
             check_learner(self.learner)
 
-    def task(self, samples: StaticSamples) -> LearningTask:
+    def task(self, samples: StaticSamples, robot: Robot) -> LearningTask:
         """Return what learners are told beforehand."""
         rows, joints = samples.q.shape
-        return LearningTask(joints, rows, True, self.robot, self.seed)
+        width = robot.limits[:, 1] - robot.limits[:, 0]
+        turning = tuple((np.abs(width - 2.0 * np.pi) < 1e-9).tolist())  # no limits in the file
+        return LearningTask(joints, rows, True, self.robot, self.seed, turning)
 
 
 @single_thread()
@@ -97,7 +99,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     Returns
     -------
     LearnedModel
-        ``details`` hold outliers, errors on held out rows, and the disagreement with the analytic
+        ``details`` hold outliers, errors on held out poses, and the disagreement with the analytic
         gravity of the robot.
 
     Raises
@@ -113,7 +115,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     _record(robot, samples, output_directory(out))
     keep_robot_file(options.robot, out)
     name = options.learner or ("gaussian-process" if len(samples.q) <= MANY_ROWS else "network")
-    task = options.task(samples)
+    task = options.task(samples, robot)
 
     stages = iter(range(4))
     found = RelationsOfData(samples, name, task).find(
@@ -196,6 +198,7 @@ def _held_out(tried: HeldOut | None) -> dict[str, Any] | None:
         return None
     return {
         "folds": tried.folds,
+        "poses": tried.poses.count,
         "rmse": tried.rmse,
         "rmse_by_joint": tried.rmse_by_joint,
         "rmse_without_outliers": tried.rmse_of_others,

@@ -14,6 +14,7 @@ from learning.learners.by_name import LearningTask, learner_by_name
 from learning.recordings.csv_data import StaticSamples
 from learning.relations.broken_symmetries import SupportedGroup, supported_group
 from learning.relations.relation_learning import learn_relations
+from learning.statistics.poses import group_poses
 from symbolic.gravity import GravityModel
 from symbolic.relations import SymmetryGroup
 from symbolic.symmetries import primary_symmetries
@@ -33,7 +34,7 @@ class DataRelations:
     group : SymmetryGroup or None
         The relations; None: none.
     tried : HeldOut or None
-        Errors of a learner with this group on held out rows, and outliers; None for one row.
+        Errors of a learner with this group on held out poses, and outliers; None for one pose.
     test : SupportedGroup or None
         What the rows say of the relations first meant; None where there were none.
     remarks : tuple of str
@@ -59,6 +60,7 @@ class RelationsOfData:
 
     def __init__(self, samples: StaticSamples, learner: str, task: LearningTask) -> None:
         self._samples, self._learner, self._task = samples, learner, task
+        self._poses = group_poses(samples.q, task.turning)
 
     def find(
         self, which: str, gravity: GravityModel, report: Callable[[str], Any]
@@ -102,6 +104,8 @@ class RelationsOfData:
     def _learned(self, left_out: Flags) -> tuple[SymmetryGroup | None, tuple[str, ...]]:
         found = learn_relations(self._samples.q[~left_out], self._samples.tau[~left_out])
         said = f"{found.order} symmetry relations learned from the data"
+        if found.note:
+            said += f"; {found.note}"
         if found.missing:
             said += f"; missing: {found.missing}"
         if left_out.any():
@@ -111,7 +115,7 @@ class RelationsOfData:
     def _tried(
         self, group: SymmetryGroup | None, learner: str | None = None
     ) -> tuple[HeldOut | None, Flags]:
-        if len(self._samples.q) < 2:
+        if self._poses.count < 2:
             return None, self._nobody()
         name = self._learner if learner is None else learner
         found = held_out(
@@ -119,13 +123,14 @@ class RelationsOfData:
             self._samples.q,
             self._samples.tau,
             np.random.default_rng(self._task.seed),
+            poses=self._poses,
         )
         return found, found.outliers
 
     def _screened(self) -> Flags:
-        """Outliers by the form of rigid gravity where the rows suffice, else by the learner."""
-        rows, joints = self._samples.q.shape
-        plenty = rows * joints >= EQUATIONS * 3**joints
+        """Outliers by the form of rigid gravity where the poses suffice, else by the learner."""
+        joints = self._samples.q.shape[1]
+        plenty = self._poses.count * joints >= EQUATIONS * 3**joints
         return self._tried(None, "trigonometric" if plenty else None)[1]
 
     def _nobody(self) -> Flags:

@@ -18,8 +18,9 @@ MUCH_BETTER = 3.0
 def outlier_remarks(tried: HeldOut | None, dropped: bool, count: int) -> tuple[str, ...]:
     """Say what held out rows tell: the error, and which rows do not fit the others."""
     if tried is None:
-        return ("one row only: no error on held out rows",)
-    words = f"error on held out rows {tried.rmse:.4g} N m ({tried.folds}-fold cross-validation)"
+        return ("one pose only: no error on held out rows",)
+    words = f"error on held out rows {tried.rmse:.4g} N m ({tried.folds}-fold cross-validation"
+    words += f" by pose: {tried.poses.count} poses)" if tried.poses.repeated else ")"
     if not tried.outliers.any():
         return (f"{words}; no outliers",)
     rows = ", ".join(str(i + 1) for i in tried.worst(count))

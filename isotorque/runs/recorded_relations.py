@@ -75,6 +75,8 @@ def relations_found(
     return relations_document(learned.group, joints, extra=extra) | {
         "method": learned.method,
         "missing": learned.missing,
+        "note": learned.note,
+        "misfit": _misfit(learned),
         "samples": len(samples.q),
         "torques": int(samples.torque_groups().max(initial=-1)) + 1,
         "secondary_pairs": [
@@ -114,6 +116,22 @@ def save_relations(run: RunOutcome, out: Path, plain: Callable[[Any], Any]) -> P
     path = out / "relations.json"
     write_whole(path, json.dumps(plain(document), indent=1) + "\n")
     return path
+
+
+def _misfit(learned: LearnedSymmetries) -> dict[str, Any] | None:
+    """What the samples show beside gravity; None where no potential could be fitted."""
+    lack = learned.lack
+    if lack is None:
+        return None
+    return {
+        "failed": lack.failed,
+        "said": lack.said,
+        "rms": lack.misfit,
+        "offset_joints": lack.offset_joints + 1,
+        "offsets": lack.offsets,
+        "offset_errors": lack.offset_errors,
+        "relations_of_gravity_alone": learned.of_gravity_alone,
+    }
 
 
 def _regression(found: Any) -> dict[str, Any] | None:

@@ -31,6 +31,8 @@ class LearningTask:
         Built-in name or file of the arm, for ``parametric``, which is told the kinematics.
     seed : int
         Seed of random starts.
+    turning : tuple of bool or None
+        Joints whose angles count modulo a full turn; None: all.
     """
 
     joints: int = 0
@@ -38,6 +40,7 @@ class LearningTask:
     noisy: bool = False
     robot: RobotOptions | str | None = None
     seed: int = 0
+    turning: tuple[bool, ...] | None = None
 
 
 Factory = Callable[[SymmetryGroup | None, LearningTask], Any]

@@ -129,6 +129,8 @@ def next_torque(
     seen, fit = np.asarray(settled, dtype=float), learned.fit
     if fit is None or len(seen) < 2:
         return None
+    if learned.lack is not None:  # the form by which `claim` decides
+        fit = fit.without_constants(learned.lack.offset_joints)
     first, second = seen[rng.integers(len(seen), size=(2, PROPOSALS))]
     between = first + rng.random((PROPOSALS, 1)) * wrap(second - first)
     acting = fit.frequencies.any(axis=0)

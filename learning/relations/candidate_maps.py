@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from learning.relations.candidate_group import CandidateGroup
+from learning.relations.claim_bounds import claim_bounds
 from learning.relations.errors_in_variables import MeasurementNoise, Undetermined
-from learning.relations.group_fit import torque_uncertainty
-from learning.relations.identification import BOUND_DEVIATIONS, LARGEST_ERROR, SIGNIFICANCE
-from learning.relations.potential_fit import FittedPotential, quantile, tail_probability
+from learning.relations.examined_fit import LARGEST_ERROR, ExaminedFit, examined_fit
+from learning.relations.identification import SIGNIFICANCE
+from learning.relations.potential_fit import FittedPotential, tail_probability
 from learning.relations.pull_back import PullBacks
 from learning.relations.samples import static_samples
-from learning.relations.silent_joints import fit_on_active_joints
 from learning.relations.wanted_samples import wanted_samples
 from symbolic.errors import InputError
 from symbolic.relations import SymmetryRelation
@@ -50,7 +50,7 @@ class JudgedCandidate:
     p_value : float
         Probability of a misfit at least as large if the relation holds; NaN where untested.
     reason : str
-        What is missing where the candidate is untestable, else empty.
+        What is missing where the candidate is untestable; what beside gravity contradicts it.
     """
 
     relation: SymmetryRelation
@@ -92,8 +92,11 @@ def judge_candidates(
     Notes
     -----
     Each candidate is one linear hypothesis on the coefficients of the fitted potential: they are a
-    fixed point of the relation. The offset is taken as it is stated. Nothing is learned here, so a
-    candidate may hold where `learn_relations` does not yet claim it.
+    fixed point of the relation. It is a claim about the measured torque: one that flips a joint
+    with a constant torque is contradicted too, and where the samples show torques that the form
+    has no term for (`lack_of_fit`), none is called consistent. The offset is taken as it is
+    stated. Nothing is learned here, so a candidate may hold where `learn_relations` does not yet
+    claim it.
 
     Examples
     --------
@@ -113,24 +116,29 @@ def judge_candidates(
             accepted = f"{configurations.shape[1]}, as the samples have"
             raise InputError("candidate relation", "number of joints", relation.n, accepted)
     try:
-        fit, _ = fit_on_active_joints(configurations, torques, noise, LARGEST_ERROR)
+        examined = examined_fit(configurations, torques, noise)
     except Undetermined as lacking:
         open_question = Judgement.UNTESTABLE
         return tuple(JudgedCandidate(r, open_question, np.nan, str(lacking)) for r in claims)
-    return tuple(_judged(relation, fit) for relation in claims)
+    return tuple(_judged(relation, examined) for relation in claims)
 
 
-def _judged(relation: SymmetryRelation, fit: FittedPotential) -> JudgedCandidate:
+def _judged(relation: SymmetryRelation, examined: ExaminedFit) -> JudgedCandidate:
+    fit, lack = examined.fit, examined.lack
     single = CandidateGroup(
         relation.basis, relation.A_sat[None], relation.d_sat[None], relation.Y[None]
     )
     p_value = _p_value(fit, single)
-    bound, rms = torque_uncertainty(fit, single, quantile(BOUND_DEVIATIONS, fit.freedom))
+    bound, rms = claim_bounds(fit, lack, single, examined.deviations)
     bounded = SymmetryRelation(
         relation.A, relation.d, relation.Y, relation.basis, relation.exact, bound[0]
     )
-    if p_value < SIGNIFICANCE:
-        return JudgedCandidate(bounded, Judgement.CONTRADICTED, p_value)
+    flipped = (relation.Y[lack.offset_joints] < 0.0).any()
+    if p_value < SIGNIFICANCE or (flipped and not lack.failed):
+        reason = f"the measured torque has {lack.said}" if flipped else ""
+        return JudgedCandidate(bounded, Judgement.CONTRADICTED, p_value, reason)
+    if lack.failed:
+        return JudgedCandidate(bounded, Judgement.UNTESTABLE, p_value, examined.obstacle)
     typical = fit.rms_torque()
     acting = typical > 0.0
     excess = float((rms[0, acting] / typical[acting]).max(initial=0.0)) / LARGEST_ERROR

@@ -82,9 +82,43 @@ def stiffness_matrices(frequencies: Frequencies, coefficients: Array, q: Array) 
     return np.einsum("Nm,mi,mj->Nij", weight, k, k, optimize=True)
 
 
+@dataclass(frozen=True, eq=False)
+class WeightedFit:
+    """Coefficients and constants fitted to samples whose angles and torques both have errors.
+
+    Attributes
+    ----------
+    estimate : (n + 2 m,) array
+        Constant torque of every joint [N m], then the coefficients [J].
+    root : (n + 2 m, n + 2 m) array
+        Upper triangular root of the normal matrix.
+    squares : float
+        Weighted sum of squared residuals.
+    log_volume : float
+        Log determinants that the restricted likelihood adds to it.
+    q : (N, n) array
+        Angles corrected by their most probable errors [rad].
+    whitening : (N, n, n) array
+        Inverse Cholesky factors of the covariances of the torques' errors.
+    design : (N n, n + 2 m) array
+        Columns of constants and features, whitened.
+    residual : (N n,) array
+        Whitened.
+    """
+
+    estimate: Array
+    root: Array
+    squares: float
+    log_volume: float
+    q: Array
+    whitening: Array
+    design: Array
+    residual: Array
+
+
 def weighted_fit(
     q: Array, tau: Array, frequencies: Frequencies, start: Array, noise: MeasurementNoise
-) -> tuple[Array, Array, tuple[float, float]]:
+) -> WeightedFit:
     """Fit coefficients to samples whose angles and torques both have errors.
 
     Parameters
@@ -92,43 +126,36 @@ def weighted_fit(
     q, tau : (N, n) arrays
         Samples [rad], [N m].
     frequencies : (m, n) int array
-    start : (2 m,) array
-        Coefficients to start from.
+    start : (n + 2 m,) array
+        Constants and coefficients to start from.
     noise : MeasurementNoise
         Noise levels, up to a common factor.
-
-    Returns
-    -------
-    coefficients : (2 m,) array
-    root : (2 m, 2 m) array
-        Triangular root of the normal matrix.
-    likelihood : (float, float)
-        Weighted sum of squared residuals, and the log determinants that the restricted
-        likelihood adds to it.
     """
+    count, n = q.shape
     estimate, true_q = start, q
-    unit = np.eye(q.shape[1])
-    spread = 1.0
+    unit = np.eye(n)
     for _ in range(ITERATIONS):
-        stiffness = stiffness_matrices(frequencies, estimate, true_q)
+        stiffness = stiffness_matrices(frequencies, estimate[n:], true_q)
         transposed = np.swapaxes(stiffness, 1, 2)
         variance = noise.torque**2 * unit + noise.angle**2 * stiffness @ transposed
-        cholesky = np.linalg.cholesky(variance)
-        features = torque_features(frequencies, true_q)
+        whitening = np.linalg.inv(np.linalg.cholesky(variance))
         target = tau - np.einsum("Nij,Nj->Ni", stiffness, q - true_q)
-        design = np.linalg.solve(cholesky, features).reshape(-1, features.shape[2])
-        white = np.linalg.solve(cholesky, target[:, :, None])[:, :, 0].ravel()
-        previous, estimate = estimate, solve(design, white, q.shape[1])
+        columns = np.concatenate(
+            [np.broadcast_to(unit, (count, n, n)), torque_features(frequencies, true_q)], axis=2
+        )
+        design = (whitening @ columns).reshape(count * n, -1)
+        white = (whitening @ target[:, :, None]).ravel()
+        previous, estimate = estimate, solve(design, white, n)
         residual = white - design @ estimate
         squares = float(residual @ residual)
         spread = float(np.sqrt(squares / max(1, white.size - design.shape[1])))
-        back = np.linalg.solve(np.swapaxes(cholesky, 1, 2), residual.reshape(q.shape)[:, :, None])
+        back = np.swapaxes(whitening, 1, 2) @ residual.reshape(count, n, 1)
         error = -(noise.angle**2) * (transposed @ back)[:, :, 0]
         limit = 4.0 * noise.angle * max(spread, 1e-300)
         true_q = q - np.clip(error, -limit, limit)
         if np.abs(estimate - previous).max() <= 1e-10 * np.abs(estimate).max():
             break
     root: Array = np.asarray(np.linalg.qr(design, mode="r"))
-    diagonals = np.diagonal(cholesky, axis1=1, axis2=2)
-    log_volume = 2.0 * float(np.log(diagonals).sum() + np.log(np.abs(np.diag(root))).sum())
-    return estimate, root, (squares, log_volume)
+    diagonals = np.diagonal(whitening, axis1=1, axis2=2)
+    log_volume = 2.0 * float(np.log(np.abs(np.diag(root))).sum() - np.log(diagonals).sum())
+    return WeightedFit(estimate, root, squares, log_volume, true_q, whitening, design, residual)

@@ -6,16 +6,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
+from learning.relations.claim_bounds import claim_bounds
 from learning.relations.errors_in_variables import MeasurementNoise, Undetermined
-from learning.relations.group_fit import GroupFit, torque_uncertainty
+from learning.relations.examined_fit import LARGEST_ERROR, ExaminedFit, examined_fit
+from learning.relations.group_fit import GroupFit
 from learning.relations.group_search import candidate_relations, largest_consistent_group
 from learning.relations.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
 from learning.relations.lifting import lifted_relations
 from learning.relations.offset_snapping import snapped_offsets
 from learning.relations.potential_fit import FittedPotential, present_frequencies, quantile
 from learning.relations.samples import static_samples
-from learning.relations.silent_joints import fit_on_active_joints
 from learning.relations.wanted_samples import wanted_samples
+from learning.statistics.lack_of_fit import LackOfFit
 from symbolic.relations import SymmetryGroup, identity
 
 Array = NDArray[np.float64]
@@ -26,10 +28,6 @@ PRESENCE = (1e-2, 1e-4, 1e-6)
 """Levels at which a frequency counts as present; each gives candidate groups."""
 SCREEN = 1e-9
 """Candidates are dropped unseen if one coefficient is off by this small a chance."""
-LARGEST_ERROR = 0.05
-"""Relations are claimed if the data exclude larger RMS torque errors, relative to RMS torque."""
-BOUND_DEVIATIONS = 3.0
-"""Errors are stated at as small a chance as three standard errors of a normal variable."""
 
 
 def identify(
@@ -76,36 +74,47 @@ def identify(
     Joints whose torque is zero in all samples are left out, after a check that the torque does not
     depend on them.
 
+    Rows of one pose count as one sample (`group_poses`). Before anything is claimed the samples
+    must not show what the form has no term for (`lack_of_fit`), and a constant torque of a joint is
+    part of the form: relations that flip it are not claimed of the measured torque.
+
     Examples
     --------
     >>> rng = np.random.default_rng(1)
-    >>> q = rng.uniform([-1.5, -1.5], [-0.1, 0.1], (5, 2))
+    >>> q = rng.uniform([-1.5, -1.5], [-0.1, 0.1], (6, 2))
     >>> lower = 6.1 * np.cos(q[:, 0] + q[:, 1])
     >>> tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
     >>> found = identify(q, tau)
     >>> found.order, found.missing
     (8, None)
-    >>> identify(q[:3], tau[:3]).missing
-    '2 more samples: 3 different ones were given, 5 determine 8 coefficients and check them'
+    >>> print(identify(q[:3], tau[:3]).missing)
+    3 more samples: 3 different ones were given, 6 determine 8 coefficients and 2 constants and
+    check them
     """
     configurations, torques = static_samples(q, tau)
     n = configurations.shape[1]
     try:
-        fit, unmoved = fit_on_active_joints(configurations, torques, noise, LARGEST_ERROR)
+        examined = examined_fit(configurations, torques, noise)
     except Undetermined as lacking:
         return _nothing(n, str(lacking))
+    fit, lack = examined.fit, examined.lack
+    if lack.failed:
+        return _nothing(n, examined.obstacle, fit, lack)
     best = _best_group(fit)
     if best is None:
         missing = "more samples: no coefficient of the fitted potential stands out of the noise"
-        return _nothing(n, missing, fit)
-    return claim(fit, best, unmoved, snap)
+        return _nothing(n, missing, fit, lack)
+    return claim(examined, best, snap)
 
 
-def _nothing(n: int, missing: str, fit: FittedPotential | None = None) -> LearnedSymmetries:
+def _nothing(
+    n: int, missing: str, fit: FittedPotential | None = None, lack: LackOfFit | None = None
+) -> LearnedSymmetries:
     unit = identity(n)
     zero = np.zeros(n)
     relation = LearnedRelation(unit, Knowledge.IDENTIFIED, 0, zero, 1.0)
-    return LearnedSymmetries(SymmetryGroup([unit]), (relation,), missing, "identification", fit)
+    group = SymmetryGroup([unit])
+    return LearnedSymmetries(group, (relation,), missing, "identification", fit, lack=lack)
 
 
 def _best_group(fit: FittedPotential) -> GroupFit | None:
@@ -127,24 +136,30 @@ def _best_group(fit: FittedPotential) -> GroupFit | None:
     return best
 
 
-def claim(
-    fit: FittedPotential, best: GroupFit, unmoved: list[int], snap: bool
-) -> LearnedSymmetries:
+def claim(examined: ExaminedFit, best: GroupFit, snap: bool) -> LearnedSymmetries:
     """State a group that the data agree with, or say how much data would be needed to claim it.
 
     Parameters
     ----------
-    fit : FittedPotential
+    examined : ExaminedFit
+        Without lack of fit.
     best : GroupFit
         Of the same fit.
-    unmoved : list of int
-        Joints that never moved.
     snap : bool
         Round offsets to multiples of a right angle where they agree.
+
+    Notes
+    -----
+    Relations are claimed of the torque that was measured. Where a joint carries a constant torque
+    b beside gravity, those that flip its sign hold of gravity alone: they miss the measured torque
+    by 2 b, and are left out (the others form a subgroup).
     """
+    fit, lack, unmoved = examined.fit, examined.lack, examined.unmoved
     rounded = snapped_offsets(best.group, best.offset_errors) if snap else None
-    group = rounded or best.group
-    bound, rms = torque_uncertainty(fit, group, quantile(BOUND_DEVIATIONS, fit.freedom))
+    whole = rounded or best.group
+    kept = np.flatnonzero((whole.Y[:, lack.offset_joints] > 0.0).all(axis=1))
+    group = whole.take(kept)
+    bound, rms = claim_bounds(fit, lack, group, examined.deviations)
     n = bound.shape[1]
     size = fit.rms_torque()
     involved = group.basis.any(axis=0)
@@ -156,16 +171,24 @@ def claim(
             f"{100.0 * LARGEST_ERROR * excess:.2g} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
             "are allowed"
         )
-        return _nothing(n, missing, fit)
+        return _nothing(n, missing, fit, lack)
     relations = lifted_relations(group, bound)
     learned = tuple(
         LearnedRelation(
             r, Knowledge.IDENTIFIED, 0, error, best.p_value, snapped=rounded is not None
         )
-        for r, error in zip(relations, best.offset_errors, strict=True)
+        for r, error in zip(relations, best.offset_errors[kept], strict=True)
     )
     unknown = None
     if unmoved:
         names = ", ".join(str(joint + 1) for joint in unmoved)
         unknown = f"samples in which joint {names} moves: the relations hold at its one angle"
-    return LearnedSymmetries(SymmetryGroup(relations), learned, unknown, "identification", fit)
+    return LearnedSymmetries(
+        SymmetryGroup(relations),
+        learned,
+        unknown,
+        "identification",
+        fit,
+        lack=lack,
+        of_gravity_alone=len(whole) - len(kept),
+    )

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from learning.relations.potential_fit import FittedPotential
+from learning.statistics.lack_of_fit import LackOfFit
 from symbolic.relations import SymmetryGroup, SymmetryRelation
 
 Array = NDArray[np.float64]
@@ -141,6 +142,11 @@ class LearnedSymmetries:
         Secondary pairs, by torque signs.
     contradicted : tuple of LearnedRelation
         Relations that pairs seem to show and the fitted potential excludes.
+    lack : LackOfFit or None
+        What the residuals of the fit say: constant torques, and torques that are no rigid gravity.
+    of_gravity_alone : int
+        Relations that hold of gravity but not of the measured torque, because they flip a joint
+        with a constant torque; they are not in the group.
     """
 
     group: SymmetryGroup
@@ -150,6 +156,21 @@ class LearnedSymmetries:
     fit: FittedPotential | None = None
     rejected: tuple[RejectedPairs, ...] = field(default=())
     contradicted: tuple[LearnedRelation, ...] = field(default=())
+    lack: LackOfFit | None = None
+    of_gravity_alone: int = 0
+
+    @property
+    def note(self) -> str | None:
+        """What was found beside gravity and what that means for the relations, if anything was."""
+        if self.lack is None or self.lack.failed or not self.lack.said:
+            return None
+        said = f"beside gravity the samples show {self.lack.said}"
+        if self.of_gravity_alone:
+            said += (
+                f"; {self.of_gravity_alone} relations that flip it hold of gravity alone, not of "
+                "the measured torque, and are left out"
+            )
+        return said
 
     @property
     def order(self) -> int:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from learning.relations.candidate_group import SAME_OFFSET, CandidateGroup
 from learning.relations.errors_in_variables import MeasurementNoise, Undetermined
+from learning.relations.examined_fit import LARGEST_ERROR
 from learning.relations.false_alarms import AcceptedRelation, accepted_relations
-from learning.relations.identification import LARGEST_ERROR
 from learning.relations.pair_evidence import supports
 from learning.relations.relation_group import Refinement, completed, find_orbits, refine_offsets
 from learning.relations.row_votes import Tolerance, voted_relations

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,7 @@ from scipy import stats
 from learning.relations.errors_in_variables import (
     MeasurementNoise,
     Undetermined,
+    WeightedFit,
     solve,
     stiffness_matrices,
     torque_features,
@@ -24,6 +25,37 @@ Frequencies = NDArray[np.int64]
 
 ROUNDING = 1e-9  # of the largest torque: residuals below it are where a motion ended, not noise
 NOISE_RATIOS = (0.01, 0.1, 1.0, 10.0)  # torque noise over angle noise times stiffness
+
+
+@dataclass(frozen=True, eq=False)
+class WhitenedSamples:
+    """Samples and a fit in units of one standard deviation of the noise.
+
+    Attributes
+    ----------
+    q : (N, k) array
+        Angles of the joints that the potential knows, corrected by their probable errors [rad].
+    joints : (k,) int array
+        Which joints these are.
+    whitening : (N, k, k) array
+        What torques are multiplied with.
+    design : (N k, k + 2 m) array
+        Columns of the constants and of the coefficients.
+    residual : (N k,) array
+        What the fit leaves.
+    root : (k + 2 m, k + 2 m) array
+        Upper triangular root of the normal matrix of the design.
+    floor : float
+        Mean square of what arithmetic leaves, in these units.
+    """
+
+    q: Array
+    joints: NDArray[np.intp]
+    whitening: Array
+    design: Array
+    residual: Array
+    root: Array
+    floor: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +76,10 @@ class FittedPotential:
         Estimated or given noise levels.
     samples : int
         Number of different samples used.
+    offsets, offset_errors : (n,) arrays
+        Constant torque of every joint beside the potential's, and its standard error [N m].
+    whitened : WhitenedSamples
+        What the fit leaves over, for a closer look (`learning.statistics.lack_of_fit`).
     """
 
     frequencies: Frequencies
@@ -52,6 +88,9 @@ class FittedPotential:
     freedom: float
     noise: MeasurementNoise
     samples: int
+    offsets: Array
+    offset_errors: Array
+    whitened: WhitenedSamples
 
     @property
     def potential(self) -> TrigonometricPolynomial:
@@ -71,6 +110,28 @@ class FittedPotential:
     def standard_error(self) -> Array:
         """Standard errors of the coefficients, shape (2 m,) [J]."""
         return np.sqrt(np.diag(self.covariance))
+
+    def without_constants(self, joints: NDArray[np.intp]) -> FittedPotential:
+        """The fit if no joint but these has a constant torque."""
+        samples = self.whitened
+        k = len(samples.joints)
+        absent = np.flatnonzero(~np.isin(samples.joints, joints))
+        present = np.setdiff1d(np.arange(len(samples.root)), absent)
+        span, root = np.linalg.qr(samples.root[:, present])
+        estimate = np.concatenate([self.offsets[samples.joints], self.coefficients])
+        found = np.linalg.solve(root, span.T @ (samples.root @ estimate))
+        free = k - len(absent)
+        offsets, errors = np.zeros((2, len(self.offsets)))
+        kept = samples.joints[present[:free]]
+        offsets[kept] = found[:free]
+        errors[kept] = np.linalg.norm(np.linalg.inv(root)[:free], axis=1)
+        return replace(
+            self,
+            coefficients=found[free:],
+            root=root[free:, free:],
+            offsets=offsets,
+            offset_errors=errors,
+        )
 
     def rms_torque(self) -> Array:
         """Root mean square torque over the whole torus, shape (n,) [N m]."""
@@ -129,7 +190,9 @@ def fit_potential(
 
     Notes
     -----
-    Every sample gives n equations for the 2 m coefficients (theory.md, section 5). An error of the
+    Every sample gives n equations for the 2 m coefficients (theory.md, section 5) and a constant
+    torque for each joint: a cable that pulls, friction that always points one way, an amplifier's
+    zero; left out, it would bend the coefficients and pass for noise. An error of the
     angles acts on the torque through the stiffness H, so residuals are weighted by the inverse of
     ``sigma_torque^2 I + sigma_angle^2 H H^T``, and the angles themselves are corrected by their
     most probable error before the next step (Gauss-Newton for the errors-in-variables problem
@@ -146,47 +209,93 @@ def fit_potential(
     Examples
     --------
     >>> rng = np.random.default_rng(0)
-    >>> q = rng.uniform(-np.pi, np.pi, (5, 2))
+    >>> q = rng.uniform(-np.pi, np.pi, (6, 2))
     >>> truth = TrigonometricPolynomial([[1, 0], [1, 1]], [0.0, 0.0], [18.4, 6.1])
     >>> fit = fit_potential(q, truth.gradient(q), all_frequencies(2))
     >>> bool((fit.potential - truth).sup_bound() < 1e-11)
     True
     """
     q, tau = _different(q, tau)
-    unknowns = 2 * len(frequencies)
-    touched = frequencies.any(axis=0)  # the equations of other joints say 0 = 0
+    touched = np.asarray(frequencies.any(axis=0))  # the equations of other joints say 0 = 0
     equations = int(touched.sum())
+    unknowns = 2 * len(frequencies) + equations
     freedom = len(q) * equations - unknowns
     least = -(-(unknowns + 1) // max(1, equations))
     if len(q) < least:
         raise Undetermined(
-            f"{least - len(q)} more samples: {len(q)} different ones were given, "
-            f"{least} determine {unknowns} coefficients and check them"
+            f"{least - len(q)} more samples: {len(q)} different ones were given, {least} determine "
+            f"{unknowns - equations} coefficients and {equations} constants and check them"
         )
     offered, frequencies = frequencies, frequencies[:, touched]
     q, tau = q[:, touched], tau[:, touched]
-    features = torque_features(frequencies, q)
     largest = max(float(np.abs(tau).max()), 1e-300)
-    start = solve(features.reshape(-1, unknowns), tau.ravel(), equations)
+    start = _start(q, tau, frequencies)
     if noise is not None:
         floor = MeasurementNoise(noise.angle, float(np.hypot(noise.torque, ROUNDING * largest)))
-        estimate, root, _ = weighted_fit(q, tau, frequencies, start, floor)
-        return FittedPotential(offered, estimate, root, np.inf, floor, len(q))
-    stiffness = stiffness_matrices(frequencies, start, q)
+        found = weighted_fit(q, tau, frequencies, start, floor)
+        return _fitted(offered, touched, found, 1.0, np.inf, floor, largest)
+    stiffness = stiffness_matrices(frequencies, start[equations:], q)
     typical = max(float(np.sqrt(np.mean(stiffness**2))), 1e-300)
-    best: tuple[float, Array, Array, MeasurementNoise] | None = None
+    best: tuple[float, WeightedFit, float, float] | None = None
     for ratio in NOISE_RATIOS:
         shape = MeasurementNoise(1.0 / typical, ratio)
-        estimate, root, (squares, log_volume) = weighted_fit(q, tau, frequencies, start, shape)
-        variance = max(squares / freedom, (ROUNDING * largest / ratio) ** 2)
-        deviance = freedom * np.log(variance) + log_volume
+        found = weighted_fit(q, tau, frequencies, start, shape)
+        variance = max(found.squares / freedom, (ROUNDING * largest / ratio) ** 2)
+        deviance = freedom * np.log(variance) + found.log_volume
         if best is None or deviance < best[0]:
-            size = float(np.sqrt(variance))
-            level = MeasurementNoise(size / typical, size * ratio)
-            best = (deviance, estimate, root / size, level)
+            best = (deviance, found, float(np.sqrt(variance)), ratio)
     assert best is not None
-    _, estimate, root, level = best
-    return FittedPotential(offered, estimate, root, float(freedom), level, len(q))
+    _, found, size, ratio = best
+    level = MeasurementNoise(size / typical, size * ratio)
+    return _fitted(offered, touched, found, size, float(freedom), level, largest)
+
+
+def _start(q: Array, tau: Array, frequencies: Frequencies) -> Array:
+    """Constants and coefficients by ordinary least squares."""
+    count, n = q.shape
+    constants = np.broadcast_to(np.eye(n), (count, n, n))
+    columns = np.concatenate([constants, torque_features(frequencies, q)], axis=2)
+    return solve(columns.reshape(count * n, -1), tau.ravel(), n)
+
+
+def _fitted(
+    offered: Frequencies,
+    touched: NDArray[np.bool_],
+    found: WeightedFit,
+    size: float,
+    freedom: float,
+    noise: MeasurementNoise,
+    largest: float,
+) -> FittedPotential:
+    """State a fit whose weights were right up to a factor: ``size`` is one standard deviation."""
+    n = int(touched.sum())
+    root = found.root / size
+    inverse = np.linalg.inv(root)
+    offsets, errors = np.zeros((2, len(touched)))
+    offsets[touched] = found.estimate[:n]
+    errors[touched] = np.linalg.norm(inverse[:n], axis=1)
+    whitening = found.whitening / size
+    rounding = np.mean(whitening.sum(axis=2) ** 2) * (ROUNDING * largest) ** 2
+    samples = WhitenedSamples(
+        found.q,
+        np.flatnonzero(touched),
+        whitening,
+        found.design / size,
+        found.residual / size,
+        root,
+        float(rounding),
+    )
+    return FittedPotential(
+        offered,
+        found.estimate[n:],
+        root[n:, n:],  # the constants come first: what is left is the root without them
+        freedom,
+        noise,
+        len(found.q),
+        offsets,
+        errors,
+        samples,
+    )
 
 
 def present_frequencies(fit: FittedPotential, level: float) -> NDArray[np.bool_]:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from learning.relations.candidate_group import SAME_OFFSET, CandidateGroup
 from learning.relations.errors_in_variables import MeasurementNoise, Undetermined
+from learning.relations.examined_fit import ExaminedFit
 from learning.relations.group_fit import fit_group
 from learning.relations.identification import SIGNIFICANCE, claim, identify
 from learning.relations.learned_symmetries import Knowledge, LearnedSymmetries
@@ -88,6 +89,10 @@ def learn_relations(
     """
     configurations, torques = static_samples(q, tau)
     identified = identify(configurations, torques, noise=noise, snap=snap)
+    lack = identified.lack
+    if lack is not None and lack.failed:
+        # pairs would show near misses of relations that the measured torque does not have
+        return dataclasses.replace(identified, method=METHOD)
     try:
         pairs = search_pairs(
             configurations, torques, _noise_of_pairs(noise, identified), largest_entry
@@ -152,18 +157,25 @@ def _pairs_first(
     fit = identified.fit
     if fit is not None and paired.order > 1:
         whole = fit_group(fit, _candidates(list(paired.group)))
-        if whole.p_value < SIGNIFICANCE:
+        flipped = identified.lack is not None and any(
+            (r.Y[identified.lack.offset_joints] < 0.0).any() for r in paired.group
+        )
+        if whole.p_value < SIGNIFICANCE or flipped:
             contradicted = tuple(r for r in paired.relations if not r.relation.is_identity)
             return dataclasses.replace(identified, contradicted=contradicted, method=METHOD)
-    return dataclasses.replace(paired, missing=missing, fit=fit, method=METHOD)
+    return dataclasses.replace(
+        paired, missing=missing, fit=fit, method=METHOD, lack=identified.lack
+    )
 
 
 def _joined(
     pairs: PairSearch, paired: LearnedSymmetries, identified: LearnedSymmetries, snap: bool
 ) -> LearnedSymmetries:
     """Both methods spoke: join their groups where the potential agrees, and add the evidence."""
-    fit = identified.fit
+    fit, lack = identified.fit, identified.lack
     assert fit is not None
+    assert lack is not None
+    examined = ExaminedFit(fit, lack, [])
     result = identified
     group = _candidates(list(identified.group))
     contradicted = []
@@ -176,7 +188,7 @@ def _joined(
         if joined is None or joined.p_value < SIGNIFICANCE:
             contradicted.append(learned)
             continue
-        claimed = claim(fit, joined, [], snap)
+        claimed = claim(examined, joined, snap)
         if claimed.missing is None:
             result = dataclasses.replace(claimed, missing=identified.missing)
             group = joined.group

@@ -40,13 +40,14 @@ def no_torque(given: int, joints: int) -> str:
     given : int
         Number of samples, all without torque.
     joints : int
-        Number of joints n: (3^n - 1)/n samples fix a potential, one more checks it.
+        Number of joints n: (3^n - 1)/n + 1 samples fix a potential and constants, one more equation
+        checks them.
 
     Examples
     --------
     >>> no_torque(0, 2)
-    '5 samples with a torque: none was given'
+    '6 samples with a torque: none was given'
     """
-    wanted = -(-(3**joints) // joints)
+    wanted = -(-(3**joints) // joints) + 1
     found = "all given torques are zero" if given else "none was given"
     return f"{wanted} samples with a torque: {found}"

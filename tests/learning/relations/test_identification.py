@@ -49,7 +49,7 @@ def test_with_noise_the_stated_bounds_hold(arm, seed, degrees):
         assert (error <= 1.3 * relation.bound + 1e-6 * scale).all()
 
 
-@pytest.mark.parametrize(("name", "count"), [("pendulum", 3), ("2r", 5), ("3r", 10)])
+@pytest.mark.parametrize(("name", "count"), [("pendulum", 4), ("2r", 6), ("3r", 10)])
 def test_few_stable_samples_give_the_whole_group(name, count):
     potential, group = known_potential(name)
     for seed in range(10):
@@ -59,7 +59,7 @@ def test_few_stable_samples_give_the_whole_group(name, count):
         assert all(r.known is Knowledge.IDENTIFIED for r in learned.relations)
 
 
-@pytest.mark.parametrize(("name", "count"), [("4r-planar", 21), ("ur5", 10)])
+@pytest.mark.parametrize(("name", "count"), [("4r-planar", 22), ("ur5", 10)])
 def test_larger_arms_need_more_samples(name, count):
     potential, group = known_potential(name)
     for seed in range(2):
@@ -80,7 +80,7 @@ def test_noise_of_a_tenth_degree(name, count):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "count", "degrees", "least"),
-    [("2r", 5, 0.0, 100), ("3r", 10, 0.0, 100), ("2r", 20, 0.1, 98), ("3r", 60, 0.1, 98)],
+    [("2r", 6, 0.0, 100), ("3r", 10, 0.0, 100), ("2r", 20, 0.1, 98), ("3r", 60, 0.1, 98)],
 )
 def test_a_hundred_seeds_without_a_false_relation(name, count, degrees, least):
     potential, group = known_potential(name)
@@ -178,8 +178,8 @@ def test_what_is_missing_is_said():
     potential, _ = known_potential("2r")
     q, tau = stable_samples(potential, np.random.default_rng(0), 6)
     cases = {
-        "2 more samples: 3 different": (q[:3], tau[:3]),
-        "4 more samples: 1 different": (np.tile(q[0], (9, 1)), np.tile(tau[0], (9, 1))),
+        "3 more samples: 3 different": (q[:3], tau[:3]),
+        "5 more samples: 1 different": (np.tile(q[0], (9, 1)), np.tile(tau[0], (9, 1))),
         "samples with a torque": (q[:0], tau[:0]),
         "all given torques are zero": (q, 0.0 * tau),
     }

@@ -129,5 +129,5 @@ def test_nothing_is_claimed_from_nothing():
     q, tau = stable_samples(potential, np.random.default_rng(5), 3)
     learned = learn_relations(q, tau)
     assert learned.order == 1
-    assert "2 more samples" in learned.missing
+    assert "3 more samples" in learned.missing
     assert "for pairing" in learned.missing

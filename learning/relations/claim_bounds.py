@@ -1,0 +1,68 @@
+"""How wrong relations can be of the measured torque, gravity and what else the joints carry."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.relations.candidate_group import CandidateGroup
+from learning.relations.group_fit import torque_uncertainty
+from learning.relations.lifting import lifted_relations
+from learning.relations.potential_fit import FittedPotential
+from learning.statistics.lack_of_fit import LackOfFit
+
+Array = NDArray[np.float64]
+
+
+def claim_bounds(
+    fit: FittedPotential, lack: LackOfFit, group: CandidateGroup, deviations: float
+) -> tuple[Array, Array]:
+    """Bounds on the error of each relation of the measured torque.
+
+    Parameters
+    ----------
+    fit : FittedPotential
+    lack : LackOfFit
+        Of the same fit.
+    group : CandidateGroup
+    deviations : float
+        Number of standard errors added everywhere.
+
+    Returns
+    -------
+    bound : (G, n) array
+        Over all q [N m]: the largest over the fitted form and every alternative to it that the
+        samples do not exclude, each with its own coefficients.
+    rms : (G, n) array
+        Root mean square over all q of the gravity part [N m], if the joints that showed no
+        constant torque have none: how well the samples know gravity. The bound takes nothing of
+        that kind for granted.
+
+    Notes
+    -----
+    A relation ``tau' = Y tau`` of the measured torque is off by ``(I - Y) b`` through constants b,
+    and by up to twice the size of any other torque that does not follow it. An alternative that
+    was not seen may still be there, as large as its estimate and so many standard errors.
+    """
+    bound, _ = torque_uncertainty(fit, group, deviations)
+    gravity = fit.without_constants(lack.offset_joints)
+    _, rms = torque_uncertainty(gravity, group, deviations)
+    bound = bound + _of_constants(fit, group, deviations)
+    relations = lifted_relations(group)
+    unit = np.eye(group.Y.shape[1])
+    for other in lack.alternatives:
+        wider, _ = torque_uncertainty(other.fit, group, deviations)
+        wider = wider + _of_constants(other.fit, group, deviations)
+        for i, relation in enumerate(relations):
+            if other.name == "spring":
+                kept = (relation.Y[:, None] * unit == relation.A).all(axis=1) & (relation.d == 0.0)
+            else:
+                kept = (unit == relation.A).all(axis=1) & (relation.d == 0.0) & (relation.Y > 0.0)
+            wider[i] += np.where(kept, 0.0, 2.0 * other.size)
+        bound = np.maximum(bound, wider)
+    return bound, rms
+
+
+def _of_constants(fit: FittedPotential, group: CandidateGroup, deviations: float) -> Array:
+    limit = np.abs(fit.offsets) + deviations * fit.offset_errors
+    return np.asarray((1.0 - group.Y) * limit)

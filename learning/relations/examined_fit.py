@@ -1,0 +1,73 @@
+"""One potential fitted to the poses of a recording, examined before anything is claimed from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.relations.errors_in_variables import MeasurementNoise
+from learning.relations.potential_fit import FittedPotential, quantile
+from learning.relations.silent_joints import fit_on_active_joints
+from learning.statistics.lack_of_fit import LackOfFit, lack_of_fit
+from learning.statistics.poses import group_poses
+
+Array = NDArray[np.float64]
+
+LARGEST_ERROR = 0.05
+"""Relations are claimed if the data exclude larger RMS torque errors, relative to RMS torque."""
+BOUND_DEVIATIONS = 3.0
+"""Errors are stated at as small a chance as three standard errors of a normal variable."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExaminedFit:
+    """A fitted potential and what its residuals say.
+
+    Attributes
+    ----------
+    fit : FittedPotential
+    lack : LackOfFit
+    unmoved : list of int
+        Joints without torque that never moved.
+    """
+
+    fit: FittedPotential
+    lack: LackOfFit
+    unmoved: list[int]
+
+    @property
+    def deviations(self) -> float:
+        """Standard errors that bounds allow for."""
+        return quantile(BOUND_DEVIATIONS, self.fit.freedom)
+
+    @property
+    def obstacle(self) -> str:
+        """What stands in the way of claims where the form of rigid gravity does not fit."""
+        return f"an arm whose torque is rigid gravity and constants: there is {self.lack.said}"
+
+
+def examined_fit(q: Array, tau: Array, noise: MeasurementNoise | None) -> ExaminedFit:
+    """Fit a potential and constants to the poses of a recording, and look at the residuals.
+
+    Parameters
+    ----------
+    q, tau : (N, n) arrays
+        Rows [rad], [N m]; those of one pose count as one sample.
+    noise : MeasurementNoise or None
+        Noise levels where known.
+
+    Raises
+    ------
+    Undetermined
+        If the poses do not determine the potential, or not whether a joint matters.
+    """
+    poses = group_poses(q)
+    torques = tau
+    if poses.repeated:
+        q, torques = poses.configurations(q), poses.means(tau)
+    fit, unmoved = fit_on_active_joints(q, torques, noise, LARGEST_ERROR)
+    deviations = quantile(BOUND_DEVIATIONS, fit.freedom)
+    lack = lack_of_fit(fit, torques, poses=poses, rows=tau, deviations=deviations)
+    return ExaminedFit(fit, lack, unmoved)

@@ -1,0 +1,337 @@
+"""Whether the form that was fitted explains the samples, or they show what it has no term for.
+
+Whatever a model has no term for ends up in its residuals, is taken for noise there and averaged
+away as if it were noise; claims then come with bounds that shrink with the number of samples and
+are wrong. So nothing is claimed before this test has been passed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from learning.relations.potential_fit import FittedPotential, tail_probability
+from learning.statistics.poses import Poses
+
+Array = NDArray[np.float64]
+
+SIGNIFICANCE = 1e-3
+"""Chance with which samples of a rigid arm are said to be misfitted, over all alternatives."""
+NEGLIGIBLE = 1e-6
+"""Misfits below this share of the largest torque are where motions ended; bounds allow for them."""
+PURE_ERROR_SIGNIFICANCE, PURE_ERROR_SHARE = 1e-4, 0.02
+"""Where poses repeat, the misfit must be this significant and this share of the torque (RMS)."""
+SPARE = 2
+"""Degrees of freedom that an alternative must leave, to know the noise."""
+DEPENDENT = 1e-6
+"""Directions of an alternative's columns that the model holds up to this share are its own."""
+
+
+@dataclass(frozen=True, eq=False)
+class Alternative:
+    """The fitted model with further terms.
+
+    Attributes
+    ----------
+    name : str
+        What the terms are.
+    fit : FittedPotential
+        Coefficients, offsets and their errors if the terms are there.
+    size : (n,) array
+        Largest torque that each joint's terms may have within half a turn [N m], noise included.
+    p_value : float
+        Chance of such an improvement, or a larger one, if the terms are not there.
+    misfit : (n,) array
+        Root mean square over the samples of what the terms explain better [N m].
+    said : str
+        The terms in words, with numbers.
+    """
+
+    name: str
+    fit: FittedPotential
+    size: Array
+    p_value: float
+    misfit: Array
+    said: str
+
+
+@dataclass(frozen=True, eq=False)
+class LackOfFit:
+    """What the residuals of a fitted potential say.
+
+    Attributes
+    ----------
+    offset_joints : (k,) int array
+        Joints with a constant torque beside gravity.
+    offsets, offset_errors : (n,) arrays
+        Constant torques and their standard errors [N m].
+    alternatives : tuple of Alternative
+        All that there were samples enough for.
+    misfit : (n,) array
+        Root mean square of what the form cannot explain [N m]; zero where the test is passed.
+    said : str
+        What is wrong, with its size; empty where the test is passed and there is no offset.
+    """
+
+    offset_joints: NDArray[np.intp]
+    offsets: Array
+    offset_errors: Array
+    alternatives: tuple[Alternative, ...]
+    misfit: Array
+    said: str
+
+    @property
+    def failed(self) -> bool:
+        """Whether the samples show what the form has no term for: nothing may be claimed."""
+        return bool(self.misfit.any())
+
+
+def lack_of_fit(
+    fit: FittedPotential,
+    tau: Array,
+    *,
+    poses: Poses | None = None,
+    rows: Array | None = None,
+    deviations: float = 3.0,
+) -> LackOfFit:
+    """Look for what a potential and constant torques cannot explain.
+
+    Parameters
+    ----------
+    fit : FittedPotential
+        Of one sample per pose.
+    tau : (N, n) array
+        Torques of these samples [N m].
+    poses : Poses, optional
+        How rows were grouped into samples.
+    rows : (N', n) array, optional
+        Torques of the rows [N m]; needed with ``poses``.
+    deviations : float
+        Standard errors that ``Alternative.size`` allows for.
+
+    Returns
+    -------
+    LackOfFit
+
+    Notes
+    -----
+    Terms that are tried on every joint beside the potential and its constant: a torque that grows
+    with the joint's angle (a spring), and one of twice its angle (a cable over a pulley, a bent
+    link). If the form is right they explain the residuals no better than chance: a Wald test with a
+    noise level of each joint, of its own (F distributed; chi-square where the noise is known).
+    Where poses repeat, the scatter within poses says how large the residuals may be [1]_; that also
+    finds what has no name. With too few samples for a term it is not tried: then there are only a
+    few degrees of freedom, and Student's factors are large.
+
+    References
+    ----------
+    .. [1] N. R. Draper, H. Smith, "Applied Regression Analysis", 3rd ed., Wiley 1998, section 2.1.
+
+    Examples
+    --------
+    >>> from learning.relations.potential_fit import all_frequencies, fit_potential
+    >>> rng = np.random.default_rng(0)
+    >>> q = rng.uniform(-3.0, 3.0, (40, 2))
+    >>> lower = 6.1 * np.cos(q[:, 0] + q[:, 1])
+    >>> tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
+    >>> tau += 0.02 * rng.normal(size=tau.shape)
+    >>> def examined(tau):
+    ...     return lack_of_fit(fit_potential(q, tau, all_frequencies(2)), tau)
+    >>> examined(tau).said
+    ''
+    >>> examined(tau + [0.0, 0.3]).said
+    'a constant torque of +0.304 N m on joint 2 (standard error 0.003)'
+    >>> examined(tau + [0.0, 0.2] * q).said
+    'a torque that grows with its angle (a spring), +0.194 N m/rad on joint 2'
+    """
+    n = len(fit.offsets)
+    largest = max(float(np.abs(tau).max(initial=0.0)), 1e-300)
+    found = tuple(_alternatives(fit, deviations))
+    nothing = np.zeros(n)
+    worst = min(found, key=lambda a: a.p_value, default=None)
+    joints = _offset_joints(fit, largest)
+    offset = "; ".join(
+        f"a constant torque of {fit.offsets[j]:+.3g} N m on joint {j + 1} (standard error "
+        f"{fit.offset_errors[j]:.1g})"
+        for j in joints
+    )
+    misfit, said = nothing, offset
+    if worst is not None and worst.p_value < SIGNIFICANCE / len(found):
+        if worst.misfit.max() > NEGLIGIBLE * largest:
+            misfit, said = worst.misfit, worst.said
+    elif poses is not None and rows is not None and poses.repeated:
+        scattered = _beyond_pure_error(fit, poses, rows)
+        size = float(np.sqrt(np.mean(tau**2)))
+        if scattered.max(initial=0.0) > PURE_ERROR_SHARE * size:
+            misfit = scattered
+            said = (
+                f"the {poses.count} poses miss the form of gravity by "
+                f"{_listed(scattered)} N m RMS by joint, far more than the rows of one pose scatter"
+            )
+    if not misfit.any() and np.isinf(fit.freedom):
+        beyond = _beyond_known_noise(fit)
+        if beyond.max(initial=0.0) > NEGLIGIBLE * largest:
+            misfit = beyond
+            said = f"residuals of {_listed(beyond)} N m RMS by joint, more than the given noise"
+    return LackOfFit(joints, fit.offsets, fit.offset_errors, found, misfit, said)
+
+
+def _listed(values: Array) -> str:
+    return ", ".join(f"{x:.2g}" for x in values)
+
+
+def _offset_joints(fit: FittedPotential, largest: float) -> NDArray[np.intp]:
+    """Joints whose constants noise does not explain."""
+    joints = fit.whitened.joints
+    size, error = np.abs(fit.offsets[joints]), fit.offset_errors[joints]
+    ratio = np.divide(size, error, out=np.zeros_like(size), where=error > 0.0)
+    chance = np.array([tail_probability(float(z**2), 1, fit.freedom) for z in ratio])
+    seen = (chance < SIGNIFICANCE / max(1, len(joints))) & (size > NEGLIGIBLE * largest)
+    return np.asarray(joints[seen])
+
+
+def _alternatives(fit: FittedPotential, deviations: float) -> list[Alternative]:
+    """The fit with springs on every joint, and with second harmonics on every joint."""
+    samples = fit.whitened
+    q, k = samples.q, len(samples.joints)
+    turns = 2.0 * q
+    kinds = {
+        "spring": q[:, :, None],
+        "second harmonic": np.stack([np.cos(turns), np.sin(turns)], axis=2),
+    }
+    if len(q) * k < samples.design.shape[1] + k + SPARE:
+        return []
+    span, root = np.linalg.qr(samples.design)
+    found = []
+    for name, values in kinds.items():
+        width = values.shape[2]
+        if len(q) * k >= samples.design.shape[1] + k * width + SPARE:
+            found.append(_alternative(fit, name, values, span, root, deviations))
+    return found
+
+
+def _alternative(
+    fit: FittedPotential, name: str, values: Array, span: Array, root: Array, deviations: float
+) -> Alternative:
+    samples = fit.whitened
+    count, k, width = values.shape
+    size = np.sqrt(np.mean(values**2, axis=0)) + 1e-300  # (k, width)
+    columns = np.einsum("Nij,Njw->Nijw", samples.whitening, values / size)
+    columns = columns.reshape(count * k, k * width)
+    held = span.T @ columns
+    beyond = columns - span @ held
+    again = span.T @ beyond
+    beyond, held = beyond - span @ again, held + again
+    left, singular, right = np.linalg.svd(beyond, full_matrices=False)
+    whole = np.linalg.norm(columns, axis=0).max()
+    seen = singular > DEPENDENT * whole
+    left, singular, right = left[:, seen], singular[seen], right[seen]
+    coordinates = left.T @ samples.residual
+    rest = samples.residual - left @ coordinates
+    lever = (span**2).sum(axis=1) + (left**2).sum(axis=1)
+    degrees = int(seen.sum())
+    freedom = count * k - span.shape[1] - degrees
+    own = np.maximum(count - lever.reshape(count, k).sum(axis=0), 1e-9)
+    level = (rest.reshape(count, k) ** 2).sum(axis=0) / own
+    if own.min() < SPARE:  # too few to tell joints apart
+        level = np.full(k, float(rest @ rest) / max(1, freedom))
+    # noise given too small is no further term: that is found by itself
+    level = np.maximum(level, samples.floor if np.isfinite(fit.freedom) else 1.0)
+    weight = np.tile(level, count)
+    spread = (left * weight[:, None]).T @ left  # covariance of the coordinates
+    own_freedom = float(freedom) / k if np.isfinite(fit.freedom) else np.inf
+    statistic = float(coordinates @ np.linalg.solve(spread, coordinates)) if degrees else 0.0
+    back = right.T / singular
+    terms = back @ coordinates
+    covariance = back @ spread @ back.T
+    effect = np.linalg.solve(root, held)  # what one unit of a term takes from the coefficients
+    estimate = -effect @ terms
+    more = effect @ covariance @ effect.T
+    offsets, errors = fit.offsets.copy(), fit.offset_errors.copy()
+    offsets[samples.joints] += estimate[:k]
+    errors[samples.joints] = np.sqrt(errors[samples.joints] ** 2 + np.diag(more)[:k])
+    extended = replace(
+        fit,
+        coefficients=fit.coefficients + estimate[k:],
+        root=_root(fit.root, more[k:, k:]),
+        offsets=offsets,
+        offset_errors=errors,
+    )
+    torque = np.linalg.solve(samples.whitening, (left @ coordinates).reshape(count, k, 1))[:, :, 0]
+    misfit = np.zeros(len(fit.offsets))
+    misfit[samples.joints] = np.sqrt(np.mean(torque**2, axis=0))
+    per_unit = terms.reshape(k, width) / size
+    doubt = np.sqrt(np.maximum(np.diag(covariance), 0.0)).reshape(k, width) / size
+    reach = np.maximum(np.pi, np.abs(samples.q).max(axis=0)) if width == 1 else np.ones(k)
+    largest = np.zeros(len(fit.offsets))
+    limit = np.linalg.norm(np.abs(per_unit) + deviations * doubt, axis=1)
+    largest[samples.joints] = limit * reach
+    return Alternative(
+        name,
+        extended,
+        largest,
+        tail_probability(statistic, degrees, own_freedom),
+        misfit,
+        _in_words(per_unit, doubt, samples.joints),
+    )
+
+
+def _root(root: Array, more: Array) -> Array:
+    """Root of the inverse of a covariance ``(root^T root)^-1 + more``."""
+    # (I + root more root^T) is well conditioned whatever the units of the coefficients
+    inner = np.eye(len(root)) + root @ more @ root.T
+    return np.asarray(np.linalg.solve(np.linalg.cholesky((inner + inner.T) / 2.0), root))
+
+
+def _in_words(terms: Array, doubt: Array, joints: NDArray[np.intp]) -> str:
+    """Say the terms that stand out, at least the largest."""
+    ratio = np.linalg.norm(terms / np.maximum(doubt, 1e-300), axis=1)
+    told = np.flatnonzero(ratio >= max(3.0, 0.2 * float(ratio.max(initial=0.0))))
+    if not len(told):
+        told = np.array([int(ratio.argmax())])
+    if terms.shape[1] == 1:
+        sizes = ", ".join(f"{terms[j, 0]:+.3g} N m/rad on joint {joints[j] + 1}" for j in told)
+        return f"a torque that grows with its angle (a spring), {sizes}"
+    sizes = ", ".join(f"{np.linalg.norm(terms[j]):.3g} N m on joint {joints[j] + 1}" for j in told)
+    return f"a torque of twice the angle (a cable, a bent link), {sizes}"
+
+
+def _residual_torque(fit: FittedPotential) -> Array:
+    """Residuals (N, n) [N m], as large as if no degrees of freedom had been spent."""
+    samples = fit.whitened
+    count, k, _ = samples.whitening.shape
+    torque = np.linalg.solve(samples.whitening, samples.residual.reshape(count, k, 1))[:, :, 0]
+    found = np.zeros((count, len(fit.offsets)))
+    spent = samples.design.shape[1] / (count * k)
+    found[:, samples.joints] = torque / np.sqrt(max(1.0 - spent, 1.0 / (count * k)))
+    return found
+
+
+def _beyond_pure_error(fit: FittedPotential, poses: Poses, rows: Array) -> Array:
+    """Root mean square residuals (n,) where scatter within poses does not explain them, or 0."""
+    deviation, freedom = poses.spread(rows)
+    residual = _residual_torque(fit)
+    if len(residual) != poses.count:
+        return np.zeros(len(deviation))
+    left = len(residual) - fit.whitened.design.shape[1] / max(1, len(fit.whitened.joints))
+    found = np.sqrt(np.mean(residual**2, axis=0))
+    for joint, sigma in enumerate(deviation):
+        weighted = float((residual[:, joint] ** 2 @ poses.rows) / len(residual))
+        ratio = weighted / max(float(sigma) ** 2, 1e-30 * weighted, 1e-300)
+        own = max(left, 0.5)
+        chance = tail_probability(ratio * own, int(np.ceil(own)), float(freedom))
+        if chance > PURE_ERROR_SIGNIFICANCE / len(deviation):
+            found[joint] = 0.0
+    return np.asarray(found)
+
+
+def _beyond_known_noise(fit: FittedPotential) -> Array:
+    """Root mean square residuals (n,) where the given noise does not explain them, else 0."""
+    samples = fit.whitened
+    degrees = samples.residual.size - samples.design.shape[1]
+    squares = float(samples.residual @ samples.residual)
+    if tail_probability(squares, degrees, np.inf) > PURE_ERROR_SIGNIFICANCE:
+        return np.zeros(len(fit.offsets))
+    return np.asarray(np.sqrt(np.mean(_residual_torque(fit) ** 2, axis=0)))
