@@ -28,7 +28,9 @@ from learning.recordings.recorded_data import record_samples
 from learning.recordings.recording import Recording
 from learning.recordings.run_info import RunInfo
 from learning.relations.broken_symmetries import SupportedGroup
+from learning.statistics.extrapolation import extrapolation
 from symbolic.gravity import GravityModel
+from symbolic.relations import wrap
 from symbolic.robot_options import RobotOptions
 from symbolic.robots import Robot, load_robot
 from verify.measured_torques import Disagreement, disagreement
@@ -132,17 +134,27 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     )
     progress(STAGE, next(stages), 3, "")
     compared = disagreement(samples.q, samples.tau, gravity, leave_out=unfit)
+    copies = [samples.q[order]]
+    if group is not None:
+        copies = [wrap(relation.configuration(samples.q[order])) for relation in group]
+    beyond = extrapolation(learner, np.concatenate(copies), samples.tau[order], robot.limits)
     return LearnedModel(
         robot,
         gravity,
         learner,
-        {"strategy": "data", "learner": name, "symmetries": options.symmetries},
+        {
+            "strategy": "data",
+            "learner": name,
+            "symmetries": options.symmetries,
+            "extrapolation": beyond.document(),
+        },
         len(order),
         0,
         1 if group is None else group.order,
         curve,
         (
             *found.remarks,
+            *([beyond.remark] if beyond.remark else []),
             *outlier_remarks(tried, options.drop_outliers, WORST),
             *analytic_remarks(compared, tried, samples, robot),
         ),

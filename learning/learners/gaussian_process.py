@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
+from scipy.spatial import KDTree
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import ConstantKernel, Kernel, WhiteKernel
@@ -17,6 +18,7 @@ from learning.learners.sample_checks import checked_configurations, checked_samp
 from learning.learners.saved_learner import SavedLearner
 from learning.learners.smooth_process import smooth_mean
 from learning.learners.symmetric_kernel import SymmetrisedPeriodicKernel
+from learning.statistics.poses import group_poses
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
@@ -32,6 +34,9 @@ NUGGET = 1e-12
 LOSS = 1e-13
 #: Length scales [rad] from the best of which the search starts.
 LENGTHS = np.geomspace(0.25, 16.0, 13)
+#: Where length scales are sought [rad]; from the usual distance of the samples on, but at least
+#: from ``LENGTH_FOR_FEW``.
+SHORTEST, LENGTH_FOR_FEW, LONGEST = 0.05, 0.5, 50.0
 
 
 class SymmetricGaussianProcess(TorqueRegressor, SavedLearner):
@@ -118,6 +123,7 @@ class SymmetricGaussianProcess(TorqueRegressor, SavedLearner):
         size = np.sqrt(np.mean(torque**2, axis=0))
         self._scale = np.where(size > 1e-9 * size.max(initial=0.0), size, 1.0)
         self._q, self._torque = q, torque
+        self._shortest = _shortest_length(q)
         self._condition([None] * self.n_outputs_)
         self.n_samples_seen_ = len(q)
         return self
@@ -214,9 +220,9 @@ class SymmetricGaussianProcess(TorqueRegressor, SavedLearner):
         return kernel if self.noise is not None else kernel.k1
 
     def _kernel(self, joint: int) -> Kernel:
-        bounds = "fixed" if self.length_scale is not None else (0.05, 50.0)
+        bounds: Any = "fixed" if self.length_scale is not None else (self._shortest, LONGEST)
         periodic = SymmetrisedPeriodicKernel(
-            self._coordinates, joint, self.length_scale or 2.0, bounds
+            self._coordinates, joint, self.length_scale or max(2.0, self._shortest), bounds
         )
         kernel = ConstantKernel(1.0, (1e-12, 1e10)) * (periodic + WhiteKernel(NUGGET, "fixed"))
         return kernel if self.noise is not None else kernel + WhiteKernel(1e-4, (1e-12, 1.0))
@@ -232,6 +238,7 @@ class SymmetricGaussianProcess(TorqueRegressor, SavedLearner):
 
     def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
         self._q, self._torque, self._scale = arrays["q"], arrays["torque"], arrays["scale"]
+        self._shortest = SHORTEST
         self._condition([arrays[f"theta_{i}"] for i in range(self.n_outputs_)])
 
     def _check_parameters(self) -> None:
@@ -248,6 +255,20 @@ class SymmetricGaussianProcess(TorqueRegressor, SavedLearner):
         self._flat = flat
         self.n_outputs_ = outputs
         self.n_samples_seen_ = 0
+
+
+def _shortest_length(q: Array) -> float:
+    """Length scale that the samples can show at best [rad]: their usual distance.
+
+    A shorter one would explain each sample by itself, and answer zero in between.
+    """
+    poses = group_poses(q)
+    if poses.count < 2:
+        return SHORTEST
+    places = poses.configurations(q)
+    circles = np.concatenate([np.cos(places), np.sin(places)], axis=1)
+    nearest = KDTree(circles).query(circles, k=2)[0][:, 1]
+    return float(np.clip(np.median(nearest), SHORTEST, LENGTH_FOR_FEW))
 
 
 def _search(numbers: int) -> Callable[..., tuple[Array, float]]:

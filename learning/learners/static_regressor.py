@@ -13,6 +13,7 @@ from scipy.linalg import lstsq
 
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.saved_learner import SavedLearner
+from learning.statistics.shrinkage import shrunk_least_squares
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
@@ -34,9 +35,9 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
     snap : bool
         Whether rounded angles are snapped in a file that is given by its name alone.
     ridge : float
-        Penalty on the squares of the parameters (mass [kg], first moments [kg m]); 0: least
-        squares, the smallest parameters where the samples leave some open (most always are:
-        only the base parameters matter for torques).
+        Penalty on the squares of the parameters (mass [kg], first moments [kg m]); 0: as much as
+        the residuals and the size of the torques call for, and the smallest parameters where the
+        samples leave some open (most always are: only the base parameters matter for torques).
     group : SymmetryGroup or None
         Relations to exploit: every sample is fitted with all its symmetric copies, which settles
         parameters that the samples leave open. Needed rarely.
@@ -117,11 +118,29 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         root = np.sqrt(weights)[:, None]
         features = (self._regressors(q) * root[:, :, None]).reshape(torque.size, -1)
         targets = (torque * root).ravel()
+        self._root = None
         if self.ridge:
             features = np.vstack([features, np.sqrt(self.ridge) * np.eye(features.shape[1])])
             targets = np.append(targets, np.zeros(features.shape[1]))
-        self.parameters_, _, self.rank_, _ = lstsq(features, targets, cond=1e-11)
+            self.parameters_, _, self.rank_, _ = lstsq(features, targets, cond=1e-11)
+            return self
+        self.rank_ = int(np.linalg.matrix_rank(features, rtol=1e-11))
+        gravity = max(float(np.linalg.norm(self._model.gravity.linear)), 1e-300)
+        largest = float(np.abs(targets).max(initial=0.0)) / gravity
+        self.parameters_, self._root = shrunk_least_squares(features, targets, largest)
         return self
+
+    def standard_error(self, X: Any) -> Array | None:
+        """Standard errors (m, n) [N m] of ``predict``, as far as the residuals tell.
+
+        None for a loaded model, and where ``ridge`` was given.
+        """
+        fitted(self)
+        root: Array | None = getattr(self, "_root", None)
+        if root is None:
+            return None
+        q = checked_configurations(self, X, first=False)
+        return np.asarray(np.linalg.norm(self._regressors(q) @ root, axis=2))
 
     def predict(self, X: Any) -> Array:
         """Torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
@@ -147,7 +166,7 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         result = np.empty((len(q), self._model.nv, len(columns)))
         for row, configuration in zip(result, q, strict=True):
             whole = pin.computeJointTorqueRegressor(self._model, data, configuration, rest, rest)
-            row[:] = whole[:, columns]
+            row[:] = np.reshape(whole, (self._model.nv, -1))[:, columns]  # one joint: a vector
         return result
 
     def _arrays(self) -> dict[str, NDArray]:

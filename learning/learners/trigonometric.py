@@ -16,6 +16,7 @@ from learning.learners.equivariant_basis import (
 )
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.saved_learner import SavedLearner
+from learning.statistics.shrinkage import shrunk_least_squares
 from learning.symmetry_use import GroupArrays, SymmetryCoordinates
 from learning.torque_score import TorqueRegressor
 from symbolic.errors import InputError
@@ -33,8 +34,9 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         Fit one potential, of which the torques are the derivatives; otherwise a function for
         every joint, for which the group is all that joins them.
     ridge : float
-        Penalty on the squares of the coefficients, in units of one sample's worth; 0: least
-        squares, the smallest coefficients where the samples leave some open.
+        Penalty on the squares of the coefficients, in units of one sample's worth; 0: as much as
+        the residuals and the size of the torques call for (`shrunk_least_squares`): none for exact
+        samples, and the smallest coefficients where the samples leave some open.
     group : SymmetryGroup or None
         Relations that the model shall have, exactly; frequencies are those of y = B q.
 
@@ -51,7 +53,9 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
     rounding from as many equations as coefficients: on the 2R arm with its group one sample (a
     potential) or two (by joints), on the 3R one or three. Prefer it where kinematics and masses
     are not known but the arm is rigid. Springs, cables and bending are not in it, and its
-    residuals say so; use ``SymmetricGaussianProcess`` or ``RecursiveLeastSquares`` then. Without
+    residuals say so; use ``SymmetricGaussianProcess`` or ``RecursiveLeastSquares`` then. Samples
+    from a narrow region leave coefficients open; noise would make them huge, so they are kept as
+    small as the torques, and ``standard_error`` says where nothing is known. Without
     a group the number of frequencies grows as 3^n: up to six joints or so.
 
     Examples
@@ -103,6 +107,8 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
         self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
         root = np.sqrt(weights)[:, None]
+        self._roots: list[Array] = []
+        self._largest = float(np.abs(torque).max(initial=0.0))
         if self.potential:
             features = self._gradients(q) * root[:, :, None]
             self._coefficients = (
@@ -130,6 +136,24 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         else:
             result = self._features(q) @ self._coefficients
         return result[:, 0] if self._flat else result
+
+    def standard_error(self, X: Any) -> Array | None:
+        """Standard errors (m, n) [N m] of ``predict``, as far as the residuals tell.
+
+        None for a loaded model, and where ``ridge`` was given.
+        """
+        fitted(self)
+        if not getattr(self, "_roots", None):
+            return None
+        q = checked_configurations(self, X, first=False)
+        result = np.zeros((len(q), self.n_outputs_))
+        if self.potential:
+            effect = self._gradients(q) @ (self._bases[0] @ self._roots[0])
+            return np.asarray(np.linalg.norm(effect, axis=2))
+        for basis, joints, root in zip(self._bases, self._classes, self._roots, strict=True):
+            error = np.linalg.norm(self._features(q) @ (basis @ root), axis=1)
+            result[:, joints] = error[:, None]
+        return result
 
     def jacobian(self, X: Any) -> Array:
         """Estimated stiffness d torque / d q, (m, n, n) [N m / rad]."""
@@ -189,11 +213,15 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
 
     def _solve(self, features: Array, targets: Array) -> Array:
         if not features.shape[1]:
+            self._roots.append(np.zeros((0, 0)))
             return np.zeros((0, *targets.shape[1:]))
-        if self.ridge:
-            more = np.sqrt(self.ridge) * np.eye(features.shape[1])
-            features = np.concatenate([features, more])
-            targets = np.concatenate([targets, np.zeros((len(more), *targets.shape[1:]))])
+        if not self.ridge:
+            solution, root = shrunk_least_squares(features, targets, self._largest)
+            self._roots.append(root)
+            return solution
+        more = np.sqrt(self.ridge) * np.eye(features.shape[1])
+        features = np.concatenate([features, more])
+        targets = np.concatenate([targets, np.zeros((len(more), *targets.shape[1:]))])
         return np.asarray(lstsq(features, targets, cond=1e-12, check_finite=False)[0])
 
     def _arrays(self) -> dict[str, NDArray]:
