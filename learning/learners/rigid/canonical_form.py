@@ -66,6 +66,14 @@ class CanonicalForm:
             levers[j] = (_about_z(turned[j])[:2, :2]) @ chain.levers[j]
         return cls(offsets, twists, levers, chain)
 
+    @classmethod
+    def read(cls, chain: ChainParameters) -> CanonicalForm:
+        """Read off the numbers of a chain whose rotations are of this form, whatever the signs."""
+        F = chain.rotations
+        offsets = np.arctan2(F[:, 1, 0], F[:, 0, 0])
+        twists = np.arctan2(F[:, 2, 1], F[:, 2, 2])
+        return cls(offsets, twists, chain.levers.copy(), chain)
+
     @property
     def n(self) -> int:
         """Number of joints."""

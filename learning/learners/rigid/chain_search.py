@@ -123,8 +123,12 @@ def minimise(
     constraint: Constraint | None = None,
     iterations: int = ITERATIONS,
     progress: float = PROGRESS,
+    enough: float | None = None,
 ) -> SearchedChain:
-    """Go from a start to a minimum with a given whitening."""
+    """Go from a start to a minimum with a given whitening.
+
+    It ends at a cost below ``enough``; by default where polishing takes over.
+    """
     n = start.n
     everything = np.ones(2 * n, dtype=bool)
     size = float(np.sum(np.einsum("kij,kj->ki", whitening, samples.torque) ** 2))
@@ -142,7 +146,7 @@ def minimise(
         constraint is not None,
         iterations,
         progress,
-        EXACT_COST * size,
+        EXACT_COST * size if enough is None else enough,
     )
     chain = replace(
         start, rotations=rotations, levers=levers, gains=gains, coefficients=coefficients

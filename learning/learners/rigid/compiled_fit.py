@@ -17,6 +17,8 @@ RIDGE = 1e-12
 """Added to the normal equations of columns scaled to length 1, against exact dependency."""
 NEGLIGIBLE = 1e-9
 """Columns shorter than this, relative to the longest, are scaled as if they were so long."""
+TINY = 1e-100
+"""Length that stands for that of the longest column where all are zero."""
 MOST_GAIN = 50.0
 """Gains may grow to so many times what they started from."""
 
@@ -122,7 +124,7 @@ def solved(design, target):
     normal = design.T @ design
     p = len(normal)
     scale = np.empty(p)
-    longest = 1e-300
+    longest = TINY
     for c in range(p):
         scale[c] = np.sqrt(normal[c, c])
         longest = max(longest, scale[c])
@@ -208,7 +210,7 @@ def levenberg_marquardt(
         reduced = normal[:curved, :curved].copy()
         if flat > 0:
             block, across = normal[curved:, curved:].copy(), normal[curved:, :curved].copy()
-            longest = 1e-300
+            longest = TINY
             for a in range(flat):
                 longest = max(longest, np.sqrt(block[a, a]))
             scale = np.empty(flat)
@@ -220,7 +222,7 @@ def levenberg_marquardt(
                 block[a, a] += RIDGE
                 across[a] /= scale[a]
             reduced -= across.T @ np.linalg.solve(block, across)
-        longest = 1e-300
+        longest = TINY
         for a in range(curved):
             longest = max(longest, reduced[a, a])
         better = False

@@ -44,7 +44,11 @@ class Information:
     def of(cls, chain: ChainParameters, q: Array, whitening: Array, free: Mask) -> Information:
         """At the configurations (m, n) [rad] of samples with a given whitening (m, n, n)."""
         rows = whitening @ chain.derivatives(q, raw_directions(chain.n)).by_parameters()[:, :, free]
-        design = rows.reshape(-1, rows.shape[2])
+        return cls.of_rows(rows.reshape(-1, rows.shape[2]), free)
+
+    @classmethod
+    def of_rows(cls, design: Array, free: Mask) -> Information:
+        """From whitened derivatives (N, p) by the free parameters."""
         size = np.linalg.norm(design, axis=0)
         scale = np.maximum(size, 1e-9 * size.max(initial=0.0) + np.finfo(float).tiny ** 0.5)
         if len(design) > 2 * design.shape[1]:

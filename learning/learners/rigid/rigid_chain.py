@@ -13,8 +13,10 @@ from learning.learners.rigid.chain_fit import ChainFit, fit_at, fit_chain
 from learning.learners.rigid.chain_parameters import ChainParameters, checked_parents, serial
 from learning.learners.rigid.chain_samples import ChainSamples, noise_by_joint
 from learning.learners.rigid.chain_search import ChainModel
+from learning.learners.rigid.chain_symmetries import ChainSymmetries, chain_symmetries
 from learning.learners.rigid.gains import GainGroup, gain_groups, with_fixed_scales
 from learning.learners.rigid.joint_columns import offset_columns
+from learning.learners.rigid.snapping import LEVEL, SnappedChain, snapped
 from learning.learners.rigid.standard_errors import TorqueErrors
 from learning.learners.rigid.verdict import Verdict
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
@@ -88,6 +90,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
     """
 
     _errors: TorqueErrors | None
+    _snapped: tuple[float, SnappedChain] | None
     group: None = None  # symmetries follow from the chain; there is nothing to be told
 
     def __init__(
@@ -179,6 +182,37 @@ class RigidChain(TorqueRegressor, SavedLearner):
         """Estimated stiffness d torque / d q, (m, n, n) [N m / rad]."""
         return self.chain_.stiffness(self._asked(X))
 
+    def snapped(self, level: float = LEVEL) -> SnappedChain:
+        """The chain with right angles and without levers, where samples do not contradict that.
+
+        Parameters
+        ----------
+        level : float
+            Level of the test of every hypothesis.
+        """
+        if self.chain_ is not None and (self._snapped is None or self._snapped[0] != level):
+            self._snapped = (level, snapped(self.fit_, level))
+        assert self._snapped is not None
+        return self._snapped[1]
+
+    def symmetries(self, tolerance: float = 0.0) -> ChainSymmetries:
+        """The complete symmetry group of the snapped chain, bounded for the measured arm.
+
+        Parameters
+        ----------
+        tolerance : float
+            Also relations that err by no more in any torque of the snapped chain [N m].
+
+        Examples
+        --------
+        >>> q = np.random.default_rng(0).uniform(-3, 3, (6, 2))
+        >>> lower = 6.13 * np.cos(q.sum(axis=1))
+        >>> torque = np.stack([18.39 * np.cos(q[:, 0]) + lower, lower], axis=1)
+        >>> RigidChain().fit(q, torque).symmetries().group.order
+        8
+        """
+        return chain_symmetries(self.fit_, self.errors_, self.snapped(), tolerance)
+
     @property
     def verdict_(self) -> Verdict:
         """Whether the chain may be used, and why."""
@@ -253,7 +287,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         return self
 
     def _take(self, fit: ChainFit) -> None:
-        self.fit_, self._errors = fit, None
+        self.fit_, self._errors, self._snapped = fit, None, None
 
     def parameters(self) -> dict[str, Any]:
         """Settings and counters as plain numbers (JSON)."""
