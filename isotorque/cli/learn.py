@@ -20,7 +20,7 @@ from isotorque.cli.options import (
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, row, say
-from isotorque.cli.robot_options import RobotName, load, takes_robot
+from isotorque.cli.robot_options import load, named, takes_robot
 from isotorque.cli.run_options import (
     LearnAnyway,
     LearnerName,
@@ -29,6 +29,7 @@ from isotorque.cli.run_options import (
     Strategy,
     Symmetries,
 )
+from symbolic.robot_options import RobotOptions
 
 SIMULATED = (
     "n_min",
@@ -45,8 +46,17 @@ SIMULATED = (
 @takes_robot()
 def learn(
     context: typer.Context,
-    robot: RobotName,
     out: Out,
+    robot: Annotated[
+        RobotOptions | None,
+        typer.Argument(
+            parser=named,
+            metavar="[ROBOT]",
+            help="A built-in robot (see `isotorque robots`), a URDF file, or - for standard input."
+            " Left out, with --data: nothing is known of the arm but the recording.",
+            show_default=False,
+        ),
+    ] = None,
     strategy: Strategy = "direction-sampling",
     samples: Samples = None,
     learner: LearnerName = None,
@@ -82,7 +92,9 @@ def learn(
     """Learn the inverse statics model of ROBOT; goes on from a discovery in OUT, or makes one.
 
     A lattice is visited with guided physics; what is not given is as in the discovery. Exit
-    status 1, with nothing learned, where fewer relations than --n-min are known.
+    status 1, with nothing learned, where fewer relations than --n-min are known. Without ROBOT,
+    a rigid chain is learned from --data, with its relations; exit status 1, and what is missing,
+    where none is accepted.
     """
     from isotorque.cli.progress import progress_bars
     from isotorque.files import output_directory
@@ -95,6 +107,8 @@ def learn(
     from isotorque.runs.run_options import LATTICE
 
     given = _given(context)
+    if robot is None:
+        return _learn_from_data_alone(given, out, json=json, quiet=quiet)
     load(as_recorded(robot, out), quiet)
     if data is not None:
         _refuse(given, ("strategy", "samples", *SIMULATED), "--data")
@@ -118,6 +132,45 @@ def learn(
         if document["model"] is not None:
             say(f"written: {document['model']}", quiet)
     return 0 if document["model"] is not None else 1
+
+
+def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quiet: bool) -> int:
+    from isotorque.runs.chain_from_data import ChainDataOptions, chain_from_data
+    from symbolic.errors import InputError
+
+    if given.get("data") is None:
+        accepted = "the name or file of a robot, or --data FILE.csv"
+        raise InputError("command line", "ROBOT", "missing", accepted)
+    other = tuple(x for x in SIMULATED if x not in ("torque_noise", "angle_noise"))
+    _refuse(given, ("strategy", "samples", "symmetries", "drop_outliers", *other), "no ROBOT")
+    if given.get("learner", "rigid-chain") != "rigid-chain":
+        accepted = "rigid-chain, the learner that needs no robot; or a ROBOT"
+        raise InputError("command line", "--learner", given["learner"], accepted)
+    options = ChainDataOptions(
+        given["data"], given.get("torque_noise"), given.get("angle_noise"), given.get("seed", 0)
+    )
+    found = chain_from_data(options)
+    document = found.document(found.save(out))
+    if json:
+        emit_json(document)
+    else:
+        _print_chain(document)
+        if document["model"] is not None:
+            say(f"written: {document['model']} and {out / 'relations.json'}", quiet)
+    return 0 if document["accepted"] else 1
+
+
+def _print_chain(document: dict[str, Any]) -> None:
+    print(f"{document['samples']} samples of {len(document['joints'])} joints:", end=" ")
+    if not document["accepted"]:
+        print(f"no rigid chain is accepted, {document['verdict']}")
+        print(f"missing: {document['missing']}")
+        return
+    print(f"a rigid chain {document['verdict']}")
+    error = document["standard_error"]
+    print(f"torque known to {error['rms']:.2g} N m within the ranges of the recording", end=" ")
+    print(f"(standard error, RMS; at most {error['largest']:.2g})")
+    print(f"{document['relations']} symmetry relations, {document['statement']}")
 
 
 def _given(context: typer.Context) -> dict[str, Any]:

@@ -91,6 +91,53 @@ def read_csv(path: str | Path, joint_names: Sequence[str]) -> StaticSamples:
     return StaticSamples(table[:, :n].copy(), table[:, n:].copy())
 
 
+def joint_names_of(path: str | Path) -> tuple[str, ...]:
+    r"""Names of the joints by the header of a file of static samples, in the order of their q.
+
+    Parameters
+    ----------
+    path
+        The file, see `read_csv`.
+
+    Returns
+    -------
+    tuple of str
+        ``q1``, ``q2``, .. where columns are numbered.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or the header does not pair angles with torques.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> directory = tempfile.TemporaryDirectory()
+    >>> path = Path(directory.name) / "arm.csv"
+    >>> _ = path.write_text("elbow.q,shoulder.q,shoulder.tau,elbow.tau\n0,-1.5,0.25,-0.5\n")
+    >>> joint_names_of(path)
+    ('elbow', 'shoulder')
+    >>> directory.cleanup()
+    """
+    line, header = next(_lines(Path(path)), (1, []))
+    names = tuple(column.removesuffix(".q") for column in header if column.endswith(".q"))
+    if not names:
+        n = sum(column == f"q{k + 1}" for k, column in enumerate(_numbered(header)))
+        names = tuple(f"q{k}" for k in range(1, n + 1))
+    if not names or any(not name for name in names):
+        found = repr(",".join(header))
+        accepted = "q1,..,qn,tau1,..,taun or <joint>.q,..,<joint>.tau,.."
+        raise InputError(f"{path}, line {line}", "header", found, accepted)
+    _column_order(path, line, list(header), names)
+    return names
+
+
+def _numbered(header: list[str]) -> list[str]:
+    """Columns q1, q2, .. of a header, by number."""
+    numbers = (column[1:] for column in header if column[:1] == "q")
+    return [f"q{k}" for k in sorted(int(x) for x in numbers if x.isdecimal())]
+
+
 def write_csv(path: str | Path, samples: StaticSamples, joint_names: Sequence[str]) -> None:
     """Write static samples, every number with all its digits.
 

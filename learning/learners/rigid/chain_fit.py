@@ -272,8 +272,8 @@ def _too_few(fit: _Search, needed: int = 0) -> str:
 
 
 def _too_few_to_hold_out(fit: _Search) -> str:
-    needed = poses_needed(fit.model) + 1
-    while needed - -(-needed // FOLDS) < poses_needed(fit.model):
+    needed = poses_needed(fit.model) + 2
+    while needed - -(-needed // FOLDS) <= poses_needed(fit.model):
         needed += 1
     poses = fit.samples.poses
     return (
@@ -395,7 +395,7 @@ def _by_held_out(fit: _Search) -> ChainFit:
     """The chain that predicts poses left out, noise estimated from the residuals."""
     model, exact = fit.model, fit.samples
     # what is left when a fold is left out must still determine the chain
-    if exact.poses - -(-exact.poses // FOLDS) < poses_needed(model):
+    if exact.poses - -(-exact.poses // FOLDS) <= poses_needed(model):
         exhaustive = _to_rounding(fit, fit.most)
         return exhaustive or fit.refused(Verdict.TOO_FEW, _too_few_to_hold_out(fit))
     size = float(np.sqrt(np.mean(exact.torque**2)))

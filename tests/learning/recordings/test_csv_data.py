@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from learning.recordings.csv_data import StaticSamples, read_csv, write_csv
+from learning.recordings.csv_data import StaticSamples, joint_names_of, read_csv, write_csv
 from symbolic.errors import InputError
 
 MEASURED = st.floats(-1e9, 1e9)
@@ -121,3 +121,30 @@ def test_only_finite_samples_of_the_right_shape_are_written(tmp_path):
     assert not path.exists()
     with pytest.raises(InputError, match="file is not writable"):
         write_csv(tmp_path / "none" / "arm.csv", StaticSamples(good, good), ["a", "b"])
+
+
+@pytest.mark.parametrize(
+    ("header", "names"),
+    [
+        ("q1,q2,tau1,tau2", ("q1", "q2")),
+        ("tau2,q2,tau1,q1", ("q1", "q2")),
+        ("elbow.q,base.q,base.tau,elbow.tau", ("elbow", "base")),
+        ("q10,q2,q1,q3,q4,q5,q6,q7,q8,q9," + ",".join(f"tau{k}" for k in range(1, 11)),
+         tuple(f"q{k}" for k in range(1, 11))),
+    ],
+)  # fmt: skip
+def test_a_header_names_the_joints(tmp_path, header, names):
+    path = tmp_path / "arm.csv"
+    path.write_text(header + "\n")
+    assert joint_names_of(path) == names
+
+
+@pytest.mark.parametrize(
+    "header",
+    ["", "a,b", "q1,tau2", "q1,q3,tau1,tau3", "a.q", "a.q,a.q,a.tau", ".q,.tau", "q1,q1,tau1"],
+)
+def test_a_header_without_pairs_is_refused(tmp_path, header):
+    path = tmp_path / "arm.csv"
+    path.write_text(header + "\n")
+    with pytest.raises(InputError, match=r"arm\.csv"):
+        joint_names_of(path)
