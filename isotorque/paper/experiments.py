@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from isotorque.paper.batch import measure_batch_2r, measure_batch_3r
 from isotorque.paper.discovery import measure_discovery
+from isotorque.paper.holding import measure_holding
 from isotorque.paper.measured import Experiment
 from isotorque.paper.online import (
     measure_3r,
@@ -22,6 +23,7 @@ EXPERIMENTS = (
     Experiment("ranges-2r", "2r", "2r", measure_ranges),
     Experiment("discovery-2r", "2r", "2r", measure_discovery),
     Experiment("static-torques-2r", "2r", "2r", measure_static_torques, 0.2),
+    Experiment("holding-2r", "2r", "2r", measure_holding),
     Experiment("literal-2r", "2r", "2r", measure_literal, 4.0),
     Experiment("guided-literal-2r", "2r", "2r", measure_guided_literal, 2.0),
     Experiment("iterated-2r", "2r", "2r", measure_iterated, 0.5),
