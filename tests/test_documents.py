@@ -1,54 +1,206 @@
-"""The Python blocks of the README and of docs/ run, in order, one namespace per page."""
+"""README and docs/: their Python runs, their commands exist, their figures are what is printed."""
 
+import importlib.util
 import re
+import shlex
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 
-from isotorque.cli.main import status
+from isotorque.cli.main import app, status
 from learning.recordings.csv_data import StaticSamples, write_csv
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot
 
 ROOT = Path(__file__).parents[1]
+PAGES = {p.name: p.read_text() for p in (ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")))}
+
+# -- Python -------------------------------------------------------------------------------------
+
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.S | re.M)
-PAGES = [
-    path
-    for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
-    if BLOCK.search(path.read_text())
-]
-BEFORE = {
-    # commands of the page that write what its Python reads
-    "export.md": [["export", "2r", "--npz", "gravity.npz"]],
+WITH_PYTHON = [name for name, text in PAGES.items() if BLOCK.search(text)]
+BEFORE = {  # commands of the page that write what its Python reads
+    "export.md": ["export 2r --npz gravity.npz"],
     "your-robot.md": [
-        [
-            "learn",
-            "2r",
-            "--data",
-            "arm.csv",
-            "--out",
-            "out/b",
-            "--quiet",
-            "--learner",
-            "parametric",
-            "--symmetries",
-            "none",
-        ],
+        "learn 2r --data arm.csv --out out/b --quiet --learner parametric --symmetries none"
     ],
 }
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_the_python_of_a_page_runs(page, tmp_path, monkeypatch, capsys):
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    """A directory with a robot's file and a recording, as the pages assume them."""
     monkeypatch.chdir(tmp_path)
+    Path("my_arm.urdf").write_text(files("symbolic").joinpath("robot_files/2r.urdf").read_text())
     robot = load_robot("2r")
-    Path("my_arm.urdf").write_text((ROOT / "symbolic/robot_files/2r.urdf").read_text())
     q = np.array([[0.1 * i, 0.3 * i - 2.0] for i in range(20)])
     write_csv("arm.csv", StaticSamples(q, GravityModel(robot).torque(q)), robot.joint_names)
-    for command in BEFORE.get(page.name, []):
-        assert status(command) == 0, capsys.readouterr().err
+
+
+@pytest.mark.parametrize("page", WITH_PYTHON)
+def test_the_python_of_a_page_runs_and_prints_what_it_says(page, place, capsys):
+    for command in BEFORE.get(page, []):
+        assert status(shlex.split(command)) == 0, capsys.readouterr().err
     names: dict = {}
-    for code in BLOCK.findall(page.read_text()):
-        if not code.lstrip().startswith(">>>"):  # those are doctests
-            exec(compile(code, str(page), "exec"), names)
+    for code in BLOCK.findall(PAGES[page]):
+        if code.lstrip().startswith(">>>"):  # those are doctests
+            continue
+        capsys.readouterr()
+        exec(compile(code, page, "exec"), names)
+        said = re.findall(r"print\(.*\)  # (.*)|^ *# (.*)$", code, re.M)
+        printed = capsys.readouterr().out.splitlines()
+        wanted = [a or b for a, b in said] if printed else []
+        assert len(printed) == len(wanted)
+        for line, words in zip(printed, wanted, strict=True):
+            assert line.startswith(words.removesuffix("...").rstrip())
+
+
+# -- commands -----------------------------------------------------------------------------------
+
+COMMANDS = typer.main.get_command(app).commands
+LINE = re.compile(r"^(?:    |\$ )(isotorque .*)$", re.M)
+INLINE = re.compile(r"`((?:isotorque|python -m|make) [^`]*)`")
+PLACEHOLDERS = {"N": "1", "A,B": "1,2"}
+
+
+def written(text):
+    """All commands of a page, those of code lines and those within sentences."""
+    for command in (*LINE.findall(text), *INLINE.findall(text)):
+        yield " ".join(re.sub(r"\s#.*", "", command).split())
+
+
+WRITTEN = sorted({(page, command) for page, text in PAGES.items() for command in written(text)})
+
+
+@pytest.mark.parametrize(("page", "command"), WRITTEN)
+def test_every_command_that_is_written_exists_with_its_options(page, command):
+    program, *arguments = shlex.split(command)
+    if program == "make":
+        targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M)
+        assert set(arguments) <= set(targets)
+    elif program == "python":
+        module, *rest = arguments[1:]
+        spec = importlib.util.find_spec(module)
+        assert spec is not None
+        if spec.origin and module.split(".")[0] in ("benchmarks", "docs"):
+            folder = Path(spec.origin)
+            sources = folder.parent.glob("*.py") if folder.name == "__init__.py" else [folder]
+            source = "".join(p.read_text() for p in sources)
+            assert all(f'"{word}"' in source for word in rest if word.startswith("--"))
+    else:
+        name, *rest = arguments
+        assert name in COMMANDS
+        if rest and "..." not in rest:
+            rest = [PLACEHOLDERS.get(word, word) for word in rest]
+            COMMANDS[name].make_context(name, rest)
+
+
+# -- figures ------------------------------------------------------------------------------------
+
+FIGURES = {
+    # command: the page and the figures in it that it prints, as they stand there
+    "isotorque derive 2r": {
+        "README.md": ["18.3938", "6.13125"],
+        "physics.md": ["18.39", "6.13"],
+        "online.md": ["18.39"],
+    },
+    "isotorque derive 3r": {"physics.md": ["6.131"]},
+    "isotorque symmetries 2r": {"README.md": ["8"], "differences.md": ["8"]},
+    "isotorque symmetries 3r": {"README.md": ["16"], "differences.md": ["16"]},
+}
+SLOW_FIGURES = {
+    "isotorque run 2r --out out/2r": {"README.md": ["0.018", "0.095", "3000", "8"]},
+    "isotorque run 2r --out out/rls --learner recursive-least-squares --samples 200": {
+        "README.md": ["0.00001", "200"]
+    },
+    "isotorque learn 2r --strategy lattice --samples 64 --out out/lattice": {
+        "README.md": ["0.00002", "64", "186", "2048"]
+    },
+    "isotorque run 3r --out out/3r": {"README.md": ["16"]},
+}
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w])")
+
+
+def check_figures(command, pages, capsys):
+    assert status(shlex.split(command)[1:]) in (0, 1)
+    captured = capsys.readouterr()
+    printed = [float(number) for number in NUMBER.findall(captured.out + captured.err)]
+    for page, figures in pages.items():
+        assert command in " ".join(PAGES[page].split())
+        for figure in figures:
+            assert re.search(rf"(?<![\d.]){re.escape(figure)}(?![\d])", PAGES[page])
+            digits = len(figure.partition(".")[2])
+            assert any(f"{number:.{digits}f}" == figure for number in printed), (figure, printed)
+
+
+@pytest.mark.parametrize("command", FIGURES)
+def test_figures_of_a_page_are_those_that_the_command_prints(command, place, capsys):
+    check_figures(command, FIGURES[command], capsys)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", SLOW_FIGURES)
+def test_figures_of_longer_commands(command, place, capsys):
+    check_figures(command, SLOW_FIGURES[command], capsys)
+
+
+# -- figures that name no command ---------------------------------------------------------------
+
+WITHOUT = {
+    # what the numbers of a section are, where they are no measurements
+    ("export.md", "Arrays"): "the version of a format",
+    ("export.md", "What becomes of a learner"): "formulas; the tests are named under CasADi",
+    ("paper.md", "How to read it"): "the paper's targets; settings",
+    ("physics.md", "When has an arm settled?"): "the rule of settling",
+    ("recordings.md", "What is refused"): "an exit status",
+    ("recordings.md", "The tables"): "a format",
+    ("relations.md", "Relations from elsewhere"): "an exit status",
+    ("theory.md", "The words proved, bounded, tested"): "the rule of snapping",
+    ("theory.md", "Level sets and secondary symmetries"): "a proof; `isotorque run` draws them",
+    ("your-robot.md", "Your own recordings"): "the format of a recording",
+}
+NAMES_ONE = re.compile(r"`(?:isotorque |python |make)|^    (?:isotorque|make) |^\$ isotorque", re.M)
+NO_PROSE = re.compile(r"<!--.*?-->|!\[.*?\]|^```.*?^```|^    .*?$|`[^`]*`|\]\([^)]*\)", re.S | re.M)
+
+
+def has_figure(body):
+    """Whether prose or tables have a number; code, links and comments do not count."""
+    return re.search(r"(?<![\w.])\d", NO_PROSE.sub("", body)) is not None
+
+
+def sections(text):
+    """Headings below the page's own, and what stands there; deeper ones begin with the rest."""
+    parts = re.split(r"^(#{2,4}) (.*)$", "## \n" + text, flags=re.M)
+    above = ""
+    for level, heading, body in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
+        above = body if level == "##" else above
+        yield heading, body, above
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_section_with_figures_names_a_command(page):
+    bare = {
+        (page, heading)
+        for heading, body, above in sections(PAGES[page])
+        if has_figure(body) and not NAMES_ONE.search(above + body)
+    }
+    assert bare - set(WITHOUT) == set()
+
+
+def test_what_needs_no_command_is_there():
+    there = {(page, heading) for page in PAGES for heading, *_ in sections(PAGES[page])}
+    assert set(WITHOUT) <= there
+
+
+def test_a_paragraph_with_figures_in_the_readme_names_a_command_nearby():
+    for _, body, _ in sections(PAGES["README.md"]):
+        whole = re.sub(
+            r"^```.*?^```", lambda m: m[0].replace("\n\n", "\n"), body, flags=re.S | re.M
+        )
+        blocks = re.split(r"\n\n+", whole)
+        for place, block in enumerate(blocks):
+            near = "\n\n".join(blocks[max(0, place - 1) : place + 2])
+            assert not has_figure(block) or NAMES_ONE.search(near), block

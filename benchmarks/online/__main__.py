@@ -5,9 +5,8 @@ Every run is the whole scheme: symmetries and static torques are discovered by t
 the first evaluation after which the error stays below it to the end of the run. Errors are root
 mean squares over joints and test configurations. Medians over seeds, the worst seed beside them.
 
-``--write`` puts the table into docs/online.md; ``--longest-seeds 1`` adds the 300,000 samples of
-the literal learner (some minutes). ``--keep DIR`` keeps finished runs, so that a benchmark that was
-stopped goes on when the command is given again.
+``--write`` puts the table into docs/online.md. ``--keep DIR`` keeps finished runs, so that a
+benchmark that was stopped goes on when the command is given again.
 """
 
 from __future__ import annotations
@@ -48,7 +47,6 @@ def main() -> int:
     parser.add_argument("--few-seeds", type=int, default=5, help="seeds of comparisons and noise")
     parser.add_argument("--long-seeds", type=int, default=3, help="seeds of 54,000 samples")
     parser.add_argument("--mode-seeds", type=int, default=1, help="the same, geared and guided")
-    parser.add_argument("--longest-seeds", type=int, default=0, help="seeds of 300,000 samples")
     parser.add_argument("--write", action="store_true", help="put the table into docs/online.md")
     parser.add_argument("--only", nargs="*", choices=list(ROWS), default=list(ROWS))
     parser.add_argument("--keep", type=Path, help="keep finished runs here; go on from them")

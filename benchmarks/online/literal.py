@@ -1,4 +1,4 @@
-"""The paper's learner to the letter: errors after 54,000 and 300,000 samples."""
+"""The paper's learner to the letter: errors after 54,000 samples."""
 
 from __future__ import annotations
 
@@ -28,13 +28,6 @@ def literal_rows(options: argparse.Namespace) -> Iterator[Row]:
         lambda seed: scheme_run(truth, literal, LITERAL, plan, seed, bold=True),
     )  # fmt: skip
     yield from _rows(runs, "at 54,000 samples", "0.0053 Nm", 0.0061)
-    if options.longest_seeds:
-        long = Plan(300_000, 100_000, SETS)
-        runs = all_seeds(
-            options.store, "literal-long", options.longest_seeds,
-            lambda seed: scheme_run(truth, literal, LITERAL, long, seed, bold=True),
-        )  # fmt: skip
-        yield from _rows(runs, "at 300,000 samples", "0.0024 Nm", 0.003)
 
 
 def mode_rows(options: argparse.Namespace) -> Iterator[Row]:

@@ -50,7 +50,8 @@ def measure_holding(robot: Robot, seed: int, effort: Effort) -> Measured:
 
     def median_seconds(body: SimulatedArm, error: float) -> float:
         torques = exact + error * directions
-        return float(np.median([seconds_held(body, *pair) for pair in zip(q, torques, strict=True)]))
+        held = [seconds_held(body, *pair) for pair in zip(q, torques, strict=True)]
+        return float(np.median(held))
 
     def slope(body: SimulatedArm) -> float:
         seconds = [median_seconds(body, error) for error in ERRORS]

@@ -122,8 +122,8 @@ ONLINE_2R = (
         number("printed_rmse_84"), paper.RMSE_84, "N m", at_most(SLACK),
         lambda n: (
             "features stay fixed while gradient steps are iterated, so their limit is one "
-            "normalised step: it takes away the error of one sample and no more; what the row above "
-            "has and this has not are wider kernels and earlier samples learned again"
+            "normalised step: it takes away the error of one sample and no more; what the row "
+            "above has and this has not are wider kernels and earlier samples learned again"
         ),
         {"dense set": number("printed_rmse_dense")},
     ),
