@@ -252,6 +252,8 @@ class UrdfReader:
             values = [float(part) for part in text.split()]
         except ValueError:
             raise InputError(self.where, of, shown, accepted) from None
-        if len(values) != count or not all(abs(value) < largest for value in values):
+        if len(values) != count or not all(map(math.isfinite, values)):
             raise InputError(self.where, of, shown, accepted)
+        if not all(abs(value) < largest for value in values):
+            raise InputError(self.where, of, shown, f"{accepted}, of size below {largest:g}")
         return values
