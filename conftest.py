@@ -20,9 +20,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="run the slow tests too")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Let test modules know of ``--slow`` when they are imported, in every process."""
+    if config.getoption("--slow"):
+        os.environ["ISOTORQUE_SLOW"] = "1"
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out slow tests unless ``--slow`` or ``ISOTORQUE_SLOW=1`` is given."""
-    if config.getoption("--slow") or os.environ.get("ISOTORQUE_SLOW") == "1":
+    if os.environ.get("ISOTORQUE_SLOW") == "1":
         return
     skip = pytest.mark.skip(reason="slow: run with --slow")
     for item in items:

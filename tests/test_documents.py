@@ -1,6 +1,7 @@
 """README and docs/: their Python runs, their commands exist, their figures are what is printed."""
 
 import importlib.util
+import json
 import re
 import shlex
 from importlib.resources import files
@@ -93,7 +94,7 @@ def test_every_command_that_is_written_exists_with_its_options(page, command):
     else:
         name, *rest = arguments
         assert name in COMMANDS
-        if rest and "..." not in rest:
+        if rest and "..." not in rest and "--help" not in rest:
             rest = [PLACEHOLDERS.get(word, word) for word in rest]
             COMMANDS[name].make_context(name, rest)
 
@@ -145,6 +146,19 @@ def test_figures_of_a_page_are_those_that_the_command_prints(command, place, cap
 @pytest.mark.parametrize("command", SLOW_FIGURES)
 def test_figures_of_longer_commands(command, place, capsys):
     check_figures(command, SLOW_FIGURES[command], capsys)
+
+
+@pytest.mark.parametrize(("robot", "observed", "order"), [("2r", 2, 8), ("3r", 0, 16)])
+def test_pairs_show_as_many_relations_as_the_pages_say(robot, observed, order, place, capsys):
+    for page in ("README.md", "differences.md", "limits.md"):
+        said = re.findall(r"(\d+|none) of (\d+) on\s+the\s+3?2?R", PAGES[page])
+        assert (str(observed or "none"), str(order)) in said
+    assert status(["discover", robot, "--out", "out/d", "--quiet"]) == 0
+    capsys.readouterr()
+    assert status(["relations", "out/d", "--json", "--quiet"]) == 0
+    known = [entry["known"] for entry in json.loads(capsys.readouterr().out)["relations"]]
+    assert len(known) == order
+    assert sum(word != "identified" for word in known) == observed
 
 
 # -- figures that name no command ---------------------------------------------------------------

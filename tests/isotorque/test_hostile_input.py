@@ -1,6 +1,7 @@
 """Whatever files hold, a command answers, or says in one line why not: no traceback, no warning."""
 
 import json
+import os
 import re
 import warnings
 from importlib.resources import files
@@ -15,7 +16,15 @@ from learning.model_files import SavedModel, save_model
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot
 
-SHARED = [HealthCheck.function_scoped_fixture]  # which only looks at what was printed
+SLOW = os.environ.get("ISOTORQUE_SLOW") == "1"  # set by --slow too
+
+
+def examples(count):
+    """So many examples, with the slow tests ten times as many."""
+    shared = [HealthCheck.function_scoped_fixture]  # which only looks at what was printed
+    return settings(max_examples=10 * count if SLOW else count, suppress_health_check=shared)
+
+
 ROBOTS = {
     name: files("symbolic").joinpath(f"robot_files/{name}.urdf").read_text()
     for name in ("pendulum", "2r")
@@ -129,7 +138,7 @@ def text_of(document):
 
 
 @given(st.data())
-@settings(max_examples=20, suppress_health_check=SHARED)
+@examples(8)
 def test_robot_files(answer, tmp_path_factory, data):
     text = mutated(data.draw, ROBOTS[data.draw(st.sampled_from(sorted(ROBOTS)))], NUMBERS)
     file = tmp_path_factory.mktemp("robot") / "arm.urdf"
@@ -142,7 +151,7 @@ def test_robot_files(answer, tmp_path_factory, data):
 
 
 @given(st.data())
-@settings(max_examples=10, suppress_health_check=SHARED)
+@examples(5)
 def test_recordings(answer, tmp_path_factory, data):
     folder = tmp_path_factory.mktemp("data")
     rows = data.draw(st.integers(0, 12))
@@ -193,7 +202,7 @@ CLAIM = {
 
 
 @given(st.data())
-@settings(max_examples=20, suppress_health_check=SHARED)
+@examples(8)
 def test_relations(answer, tmp_path_factory, data):
     file = tmp_path_factory.mktemp("relations") / "relations.json"
     file.write_bytes(text_of(disturbed(data.draw, CLAIM)))
@@ -212,7 +221,7 @@ def model(tmp_path_factory):
 
 
 @given(st.data())
-@settings(max_examples=15, suppress_health_check=SHARED)
+@examples(6)
 def test_models(answer, model, tmp_path_factory, data):
     folder = tmp_path_factory.mktemp("disturbed")
     (folder / "model.npz").write_bytes((model / "model.npz").read_bytes())
@@ -232,7 +241,7 @@ angle_noise = [0.0, 0.1]
 
 
 @given(st.data())
-@settings(max_examples=20, suppress_health_check=SHARED)
+@examples(6)
 def test_sweep_tables(answer, tmp_path_factory, data):
     folder = tmp_path_factory.mktemp("sweep")
     tokens = [*NUMBERS, '"x"', "[[1]]", "[]", "{}", "true", "1979-05-27", "10000000000", "2.0"]
@@ -244,6 +253,50 @@ def test_sweep_tables(answer, tmp_path_factory, data):
     text = "robot,learner,seed,samples\n" + ",".join(cells) + "\n"
     (folder / "t.csv").write_text(text)
     assert answer("sweep", folder / "t.csv", "--out", folder) == 2
+
+
+def planar_arm(n, length, mass, last, limits, effort, damping):
+    """A planar arm of equal rods, the last one ``last`` times as heavy."""
+    out, parent, (low, high) = ['<robot name="extreme"><link name="base"/>'], "base", limits
+    for i in range(n):
+        weight = mass * (last if i == n - 1 else 1.0)
+        inertia = weight * length**2 / 12.0
+        out.append(
+            f'<joint name="j{i}" type="revolute"><parent link="{parent}"/><child link="l{i}"/>'
+            f'<origin xyz="{length if i else 0} 0 0"/><axis xyz="0 -1 0"/>'
+            f'<limit lower="{low}" upper="{high}" effort="{effort}" velocity="20"/>'
+            f'<dynamics damping="{damping}"/></joint><link name="l{i}"><inertial>'
+            f'<origin xyz="{length / 2.0} 0 0"/><mass value="{weight}"/><inertia '
+            f'ixx="{inertia / 50.0}" ixy="0" ixz="0" iyy="{inertia}" iyz="0" izz="{inertia}"/>'
+            "</inertial></link>"
+        )
+        parent = f"l{i}"
+    return "".join(out) + "</robot>"
+
+
+ARMS = st.builds(
+    planar_arm,
+    n=st.integers(1, 2),
+    length=st.sampled_from([0.25, 1e-4, 1e4, 1e-150, 1e100]),
+    mass=st.sampled_from([5.0, 1e-6, 1e6, 1e-200, 1e200]),
+    last=st.sampled_from([1.0, 1e-9, 1e6]),
+    limits=st.sampled_from([(-3.14159, 3.14159), (-1.58, -1.56), (-1e-9, 1e-9), (0.3, 3.0)]),
+    effort=st.sampled_from([100.0, 1e-3, 1e-300, 0.0, -1.0]),
+    damping=st.sampled_from([0.0, 1e-9, 1e6]),
+)
+
+
+@given(ARMS)
+@examples(6)
+def test_extreme_arms(answer, tmp_path_factory, text):
+    folder = tmp_path_factory.mktemp("arm")
+    file, few = folder / "arm.urdf", ["--samples", "8", "--quiet", "--learner"]
+    file.write_text(text)
+    if answer("discover", file, "--out", folder / "d") == 0:
+        answer("relations", folder / "d", "--candidates", "exact")
+    answer("learn", file, "--strategy", "lattice", "--out", folder / "l", *few, "trigonometric")
+    if SLOW:
+        answer("run", file, "--out", folder / "r", *few, "recursive-least-squares")
 
 
 HUGE = ["1e300", "-1", "nan", "1e-320", "9" * 30, "x"]

@@ -38,6 +38,28 @@ def test_exact_candidates_of_a_robot_file_that_has_moved(arm, tmp_path, capsys):
     assert "robot.urdf: file is missing" in error
 
 
+@pytest.mark.parametrize("builtin", [False, True])
+def test_exact_candidates_of_part_of_a_robot(builtin, tmp_path, capsys):
+    """The part that was recorded is meant, not the whole robot, nor what it carries by default."""
+    text = files("symbolic").joinpath("robot_files/2r.urdf").read_text()
+    file, out = tmp_path / "arm.urdf", tmp_path / "run"
+    file.write_text(text.replace('name="2r"', 'name="my arm"', 1))
+    part = ["--lock", "elbow=0.5", "--payload", "0.7,0.1,0,0.05"]
+    spec = "2r" if builtin else str(file)
+    assert status(["discover", spec, "--out", str(out), "--quiet", *part]) == 0
+    file.unlink()
+    capsys.readouterr()
+    assert status(["relations", str(out), "--candidates", "exact", "--json"]) == 0
+    judged = json.loads(capsys.readouterr().out)["candidates"]["judged"]
+    assert [entry["judgement"] for entry in judged] == ["consistent"] * 4
+    assert all(len(entry["d"]) == 1 for entry in judged)
+    if not builtin:  # another part of the same file is another robot
+        more = ["relations", str(out), "--candidates", str(out / "robot.urdf")]
+        assert status([*more, "--payload", "0.7", "--json"]) == 1
+        other = json.loads(capsys.readouterr().out)["candidates"]["judged"]
+        assert "contradicted" in {entry["judgement"] for entry in other}
+
+
 @pytest.mark.parametrize("symmetries", ["learned", "exact"])
 def test_a_run_leaves_relations_that_verify_reads(symmetries, tmp_path, capsys):
     out = tmp_path / "run"
