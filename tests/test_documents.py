@@ -35,6 +35,7 @@ BEFORE = {  # commands of the page that write what its Python reads
 def place(tmp_path, monkeypatch):
     """A directory with a robot's file and a recording, as the pages assume them."""
     monkeypatch.chdir(tmp_path)
+    Path("examples").symlink_to(ROOT / "examples")
     Path("my_arm.urdf").write_text(files("symbolic").joinpath("robot_files/2r.urdf").read_text())
     robot = load_robot("2r")
     q = np.array([[0.1 * i, 0.3 * i - 2.0] for i in range(20)])
@@ -62,7 +63,7 @@ def test_the_python_of_a_page_runs_and_prints_what_it_says(page, place, capsys):
 # -- commands -----------------------------------------------------------------------------------
 
 COMMANDS = typer.main.get_command(app).commands
-LINE = re.compile(r"^(?:    |\$ )(isotorque .*)$", re.M)
+LINE = re.compile(r"^(?: {4})?(?:\$ )?(isotorque .*)$", re.M)
 INLINE = re.compile(r"`((?:isotorque|python -m|make) [^`]*)`")
 PLACEHOLDERS = {"N": "1", "A,B": "1,2"}
 
@@ -97,6 +98,36 @@ def test_every_command_that_is_written_exists_with_its_options(page, command):
         if rest and "..." not in rest and "--help" not in rest:
             rest = [PLACEHOLDERS.get(word, word) for word in rest]
             COMMANDS[name].make_context(name, rest)
+
+
+# -- output -------------------------------------------------------------------------------------
+
+SESSION = re.compile(r"^( {4}|)\$ (isotorque .*)\n((?:\1(?![$ ])(?!```).+\n)+)", re.M)
+SHOWN = [(page, m[2], m[3]) for page, text in PAGES.items() for m in SESSION.finditer(text)]
+LONG = ("run", "paper", "sweep", "learn")
+ELSEWHERE = {"panda.urdf": "a file that is not here"}
+
+
+@pytest.mark.parametrize(
+    ("page", "command", "shown"),
+    [
+        pytest.param(
+            *entry,
+            marks=pytest.mark.slow
+            if entry[1].split()[1] in LONG and "error: " not in entry[2]
+            else (),
+        )
+        for entry in SHOWN
+        if not set(entry[1].split()) & set(ELSEWHERE)
+    ],
+)
+def test_output_that_is_shown_is_what_the_command_prints(page, command, shown, place, capsys):
+    status(shlex.split(command)[1:])
+    captured = capsys.readouterr()
+    printed = (captured.out + captured.err).splitlines()
+    assert [line.strip() for line in shown.splitlines()] == [
+        line for line in printed if line in [s.strip() for s in shown.splitlines()]
+    ]
 
 
 # -- figures ------------------------------------------------------------------------------------
@@ -176,7 +207,9 @@ WITHOUT = {
     ("theory.md", "Level sets and secondary symmetries"): "a proof; `isotorque run` draws them",
     ("your-robot.md", "Your own recordings"): "the format of a recording",
 }
-NAMES_ONE = re.compile(r"`(?:isotorque |python |make)|^    (?:isotorque|make) |^\$ isotorque", re.M)
+NAMES_ONE = re.compile(
+    r"`(?:isotorque |python |make)|^(?: {4}|\$ | {4}\$ )(?:isotorque|make|python -m) ", re.M
+)
 NO_PROSE = re.compile(r"<!--.*?-->|!\[.*?\]|^```.*?^```|^    .*?$|`[^`]*`|\]\([^)]*\)", re.S | re.M)
 
 
