@@ -69,9 +69,10 @@ def answer(capfd):
             assert "Traceback" not in stream
             assert "Warning" not in stream
         if code == 2:
-            assert error.startswith("error: ")
-            assert error.count("\n") == 1
-            assert error[:-1].isprintable()
+            *said, last = error.splitlines()
+            assert last.startswith("error: ")
+            assert all(line.startswith("warning: ") for line in said)
+            assert all(line.isprintable() for line in (*said, last))
         else:
             assert "error: " not in error
         return code
