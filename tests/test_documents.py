@@ -71,7 +71,7 @@ PLACEHOLDERS = {"N": "1", "A,B": "1,2"}
 def written(text):
     """All commands of a page, those of code lines and those within sentences."""
     for command in (*LINE.findall(text), *INLINE.findall(text)):
-        yield " ".join(re.sub(r"\s#.*", "", command).split())
+        yield " ".join(re.sub(r"\s#.*|\s\|\s.*", "", command).split())
 
 
 WRITTEN = sorted({(page, command) for page, text in PAGES.items() for command in written(text)})
@@ -102,32 +102,30 @@ def test_every_command_that_is_written_exists_with_its_options(page, command):
 
 # -- output -------------------------------------------------------------------------------------
 
-SESSION = re.compile(r"^( {4}|)\$ (isotorque .*)\n((?:\1(?![$ ])(?!```).+\n)+)", re.M)
-SHOWN = [(page, m[2], m[3]) for page, text in PAGES.items() for m in SESSION.finditer(text)]
+BLOCKS = re.compile(r"^```console\n(.*?)^```|((?:^    [^\n]+\n)+)", re.S | re.M)
+STEP = re.compile(r"^\$ isotorque (.*)\n((?:(?!\$ ).+\n)*)", re.M)
 LONG = ("run", "paper", "sweep", "learn")
-ELSEWHERE = {"panda.urdf": "a file that is not here"}
+ELSEWHERE = "panda.urdf"  # a file that is not here
 
 
-@pytest.mark.parametrize(
-    ("page", "command", "shown"),
-    [
-        pytest.param(
-            *entry,
-            marks=pytest.mark.slow
-            if entry[1].split()[1] in LONG and "error: " not in entry[2]
-            else (),
-        )
-        for entry in SHOWN
-        if not set(entry[1].split()) & set(ELSEWHERE)
-    ],
-)
-def test_output_that_is_shown_is_what_the_command_prints(page, command, shown, place, capsys):
-    status(shlex.split(command)[1:])
-    captured = capsys.readouterr()
-    printed = (captured.out + captured.err).splitlines()
-    assert [line.strip() for line in shown.splitlines()] == [
-        line for line in printed if line in [s.strip() for s in shown.splitlines()]
-    ]
+def sessions():
+    """Commands with the output that is shown below them, those of one block together."""
+    for page, text in PAGES.items():
+        for block in BLOCKS.finditer(text):
+            steps = STEP.findall(block[1] or re.sub("^    ", "", block[2], flags=re.M))
+            if any(shown for _, shown in steps) and ELSEWHERE not in block[0]:
+                long = any(c.split()[0] in LONG and "error: " not in out for c, out in steps)
+                yield pytest.param(steps, marks=pytest.mark.slow if long else (), id=page)
+
+
+@pytest.mark.parametrize("steps", list(sessions()))
+def test_output_that_is_shown_is_what_the_commands_print(steps, place, capsys):
+    for command, shown in steps:
+        status(shlex.split(command.split(" | ")[0], comments=True))
+        captured = capsys.readouterr()
+        lines = shown.splitlines()
+        printed = (captured.out + captured.err).splitlines()
+        assert lines == [line for line in printed if line in lines]
 
 
 # -- figures ------------------------------------------------------------------------------------
