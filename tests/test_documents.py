@@ -137,6 +137,7 @@ FIGURES = {
         "physics.md": ["18.39", "6.13"],
         "online.md": ["18.39"],
     },
+    "isotorque discover 2r --physics geared --out out/g": {"limits.md": ["4"]},
     "isotorque derive 3r": {"physics.md": ["6.131"]},
     "isotorque symmetries 2r": {"README.md": ["8"], "differences.md": ["8"]},
     "isotorque symmetries 3r": {"README.md": ["16"], "differences.md": ["16"]},
