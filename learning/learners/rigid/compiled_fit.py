@@ -19,6 +19,8 @@ NEGLIGIBLE = 1e-9
 """Columns shorter than this, relative to the longest, are scaled as if they were so long."""
 TINY = 1e-100
 """Length that stands for that of the longest column where all are zero."""
+DROPPED = 1e150
+"""Pivot of an unknown that drops out."""
 MOST_GAIN = 50.0
 """Gains may grow to so many times what they started from."""
 
@@ -59,12 +61,67 @@ def turn(rotations, directions, steps):
     """Rotations moved along their tangents, the first then the second."""
     result = np.empty_like(rotations)
     for j in range(len(rotations)):
-        result[j] = (
-            rotations[j]
-            @ rotation_about(directions[j, 0] * steps[2 * j])
-            @ rotation_about(directions[j, 1] * steps[2 * j + 1])
-        )
+        first = rotation_about(directions[j, 0] * steps[2 * j])
+        second = rotation_about(directions[j, 1] * steps[2 * j + 1])
+        result[j] = product(product(rotations[j], first), second)
     return result
+
+
+@njit(cache=True, error_model="numpy")
+def product(A, B):
+    """Product of two (3, 3) matrices."""
+    C = np.empty((3, 3))
+    for a in range(3):
+        for b in range(3):
+            C[a, b] = A[a, 0] * B[0, b] + A[a, 1] * B[1, b] + A[a, 2] * B[2, b]
+    return C
+
+
+@njit(cache=True, error_model="numpy")
+def gram(rows):
+    """``rows^T rows``."""
+    return rows.T @ rows
+
+
+@njit(cache=True, error_model="numpy")
+def against(rows, values):
+    """``rows^T values``."""
+    result = np.zeros(rows.shape[1])
+    for i in range(rows.shape[0]):
+        for c in range(rows.shape[1]):
+            result[c] += rows[i, c] * values[i]
+    return result
+
+
+@njit(cache=True, error_model="numpy")
+def solve_definite(matrix, right):
+    """Solve ``matrix x = right`` (p, k) by Cholesky's factors; both are overwritten.
+
+    Unknowns of which rounding leaves nothing are set to zero.
+    """
+    p, k = right.shape
+    for j in range(p):
+        pivot = matrix[j, j]
+        for c in range(j):
+            pivot -= matrix[j, c] * matrix[j, c]
+        matrix[j, j] = np.sqrt(pivot) if pivot > 0.0 else DROPPED
+        for i in range(j + 1, p):
+            value = matrix[i, j]
+            for c in range(j):
+                value -= matrix[i, c] * matrix[j, c]
+            matrix[i, j] = value / matrix[j, j]
+    for b in range(k):
+        for i in range(p):
+            value = right[i, b]
+            for c in range(i):
+                value -= matrix[i, c] * right[c, b]
+            right[i, b] = value / matrix[i, i]
+        for i in range(p - 1, -1, -1):
+            value = right[i, b]
+            for c in range(i + 1, p):
+                value -= matrix[c, i] * right[c, b]
+            right[i, b] = value / matrix[i, i]
+    return right
 
 
 @njit(cache=True, error_model="numpy")
@@ -121,7 +178,7 @@ def whitened(values, whitening):
 @njit(cache=True, error_model="numpy")
 def solved(design, target):
     """Least squares by normal equations of scaled columns, refined once; and the residual."""
-    normal = design.T @ design
+    normal = gram(design)
     p = len(normal)
     scale = np.empty(p)
     longest = TINY
@@ -137,8 +194,13 @@ def solved(design, target):
     solution = np.zeros(p)
     rest = target.copy()
     for _ in range(2):
-        solution += np.linalg.solve(normal, (design.T @ rest) / scale) / scale
-        rest = target - design @ solution
+        right = (against(design, rest) / scale).reshape(p, 1)
+        solution += solve_definite(normal.copy(), right)[:, 0] / scale
+        for i in range(len(target)):
+            value = target[i]
+            for c in range(p):
+                value -= design[i, c] * solution[c]
+            rest[i] = value
     return solution, rest
 
 
@@ -205,8 +267,8 @@ def levenberg_marquardt(
             parents, rotations, levers, gains, directions, q, whitening, extra, free_turns,
             free_levers, free_gains, rows, torque, turned, leant, stiffness,
         )  # fmt: skip
-        normal = rows.T @ rows
-        downhill = (rows.T @ rest)[:curved].copy()
+        normal = gram(rows)
+        downhill = against(rows, rest)[:curved].copy()
         reduced = normal[:curved, :curved].copy()
         if flat > 0:
             block, across = normal[curved:, curved:].copy(), normal[curved:, :curved].copy()
@@ -221,7 +283,11 @@ def levenberg_marquardt(
                     block[a, b] /= scale[a] * scale[b]
                 block[a, a] += RIDGE
                 across[a] /= scale[a]
-            reduced -= across.T @ np.linalg.solve(block, across)
+            solved_across = solve_definite(block, across.copy())
+            for a in range(curved):
+                for b in range(curved):
+                    for c in range(flat):
+                        reduced[a, b] -= across[c, a] * solved_across[c, b]
         longest = TINY
         for a in range(curved):
             longest = max(longest, reduced[a, a])
@@ -231,7 +297,7 @@ def levenberg_marquardt(
             damped = reduced.copy()
             for a in range(curved):
                 damped[a, a] += damping * max(reduced[a, a], 1e-7 * longest)
-            move = np.linalg.solve(damped, downhill)
+            move = solve_definite(damped, downhill.copy().reshape(curved, 1))[:, 0]
             if not np.all(np.isfinite(move)):
                 damping *= 5.0
                 continue
