@@ -294,7 +294,7 @@ class Scheme:
     def _take_trajectories(self) -> None:
         """Admit the torques that would have held the arm where it passed by."""
         known = self.learned
-        if not self.settings.from_trajectories or known is None or known.missing is not None:
+        if not self.settings.from_trajectories or known is None or not known.decided:
             return
         if known.fit is not None:
             for trajectory in self._trajectories:
@@ -314,23 +314,24 @@ class Scheme:
             self.learned = learn_relations(*self.samples)
             orders.append(self.learned.order)
         if self.learned is not None and orders:  # they may confirm, or contradict
-            order, missing = self.learned.order, self.learned.missing
+            order, decided = self.learned.order, self.learned.decided
             unchanged = len(orders) >= self.settings.confirmations and set(orders) == {order}
             confirmed = unchanged or bool(self.gates and self.gates[-1].passed)
-            passed = missing is None and order >= self.settings.n_min and confirmed
+            passed = decided and order >= self.settings.n_min and confirmed
+            missing = self.learned.missing
             self.gates.append(GateDecision(len(self.targets), order, passed, missing))
 
     def _gate(self) -> bool:
         """Learn the relations from all settled samples; say whether they suffice."""
         self.learned = learn_relations(*self.samples)
-        order, missing = self.learned.order, self.learned.missing
+        order, decided = self.learned.order, self.learned.decided
         recent = [g.order for g in self.gates[-self.settings.confirmations :]]
         confirmed = len(recent) >= self.settings.confirmations and all(o == order for o in recent)
-        passed = missing is None and order >= self.settings.n_min and confirmed
+        passed = decided and order >= self.settings.n_min and confirmed
         if self.settings.confirmations == 0:
-            passed = missing is None and order >= self.settings.n_min
+            passed = decided and order >= self.settings.n_min
         asked = len(self.targets) or len(self.gates) + 1
-        self.gates.append(GateDecision(asked, order, passed, missing))
+        self.gates.append(GateDecision(asked, order, passed, self.learned.missing))
         return passed
 
     def learn(self) -> Iterator[ExplorationStep]:

@@ -134,14 +134,15 @@ def _of_a_chain(run: Path, *, json: bool, quiet: bool) -> bool:
 
 
 def _noise(angle: float | None, torque: float | None) -> MeasurementNoise | None:
+    from isotorque.cli.options import LARGEST
     from learning.relations.errors_in_variables import MeasurementNoise
     from symbolic.errors import InputError
 
     if angle is None and torque is None:
         return None
     for option, value in (("--angle-noise", angle), ("--torque-noise", torque)):
-        if value is not None and not (math.isfinite(value) and value >= 0.0):
-            raise InputError("command line", option, value, "a number >= 0")
+        if value is not None and not 0.0 <= value <= LARGEST:
+            raise InputError("command line", option, value, f"0 to {LARGEST:g}")
     if not (angle or torque):
         found = "0 everywhere"
         raise InputError("command line", "noise", found, "one level > 0, or neither option")

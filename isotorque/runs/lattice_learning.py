@@ -141,7 +141,7 @@ def _with_more_samples(run: RunOutcome, q: Array, torque: Array) -> tuple[str, .
     known = 1 if group is None else group.order
     held, torques = run.scheme.samples
     learned = learn_relations(np.concatenate([held, q]), np.concatenate([torques, torque]))
-    run.lattice_suffices = learned.missing is None and learned.order >= run.options.n_min
+    run.lattice_suffices = learned.decided and learned.order >= run.options.n_min
     free = learned.group.rank < learned.group.n
     if learned.order > known or (learned.order == known and (known > 1 or free)):
         run.scheme.learned = learned

@@ -16,10 +16,6 @@ DEPENDENT = 1e-9  # of the largest singular value of the scaled design
 ITERATIONS = 12
 
 
-LARGEST = 1e9
-"""Largest noise of an angle [rad] or torque [N m] that is taken for one."""
-
-
 @dataclass(frozen=True)
 class MeasurementNoise:
     """Standard deviations of independent errors of every measured value.
@@ -37,8 +33,8 @@ class MeasurementNoise:
 
     def __post_init__(self) -> None:
         for name, value in (("angle", self.angle), ("torque", self.torque)):
-            if not 0.0 <= value <= LARGEST:
-                raise InputError("measurement noise", name, value, f"0 to {LARGEST:g}")
+            if not (np.isfinite(value) and value >= 0.0):
+                raise InputError("measurement noise", name, value, "a number >= 0")
 
 
 class Undetermined(Exception):

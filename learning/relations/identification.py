@@ -191,4 +191,5 @@ def claim(examined: ExaminedFit, best: GroupFit, snap: bool) -> LearnedSymmetrie
         fit,
         lack=lack,
         of_gravity_alone=len(whole) - len(kept),
+        unmoved=tuple(unmoved),
     )

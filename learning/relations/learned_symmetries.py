@@ -133,7 +133,8 @@ class LearnedSymmetries:
     relations : tuple of LearnedRelation
         In the order of ``group``.
     missing : str or None
-        What is missing before (more) relations can be claimed; None where nothing is.
+        What is missing before (more) relations can be claimed, or what they do not speak of;
+        None where nothing is.
     method : str
         "identification", "pairing" or "pairing and identification".
     fit : FittedPotential or None
@@ -147,6 +148,8 @@ class LearnedSymmetries:
     of_gravity_alone : int
         Relations that hold of gravity but not of the measured torque, because they flip a joint
         with a constant torque; they are not in the group.
+    unmoved : tuple of int
+        Joints that never moved: the relations hold at the one angle of each.
     """
 
     group: SymmetryGroup
@@ -158,6 +161,12 @@ class LearnedSymmetries:
     contradicted: tuple[LearnedRelation, ...] = field(default=())
     lack: LackOfFit | None = None
     of_gravity_alone: int = 0
+    unmoved: tuple[int, ...] = ()
+
+    @property
+    def decided(self) -> bool:
+        """Whether all relations are known that the joints which moved can show."""
+        return self.missing is None or bool(self.unmoved)
 
     @property
     def note(self) -> str | None:

@@ -14,7 +14,7 @@ from learning.relations.false_alarms import AcceptedRelation, accepted_relations
 from learning.relations.pair_evidence import supports
 from learning.relations.relation_group import Refinement, completed, find_orbits, refine_offsets
 from learning.relations.row_votes import Tolerance, voted_relations
-from learning.relations.silent_joints import active_joints, fit_on_active_joints, never_moved
+from learning.relations.silent_joints import active_joints, fit_on_active_joints, stood_still
 from learning.relations.torque_pairs import Pairs, TorqueGroups, group_by_torque, pairs_by_signs
 from learning.relations.wanted_samples import no_torque
 from symbolic.relations import wrap
@@ -113,7 +113,7 @@ def search_pairs(
     same = max(same, 6.0 * noise.torque if noise else 0.0)
     groups = group_by_torque(q[:, active], tau[:, active], same, SMALLEST_SHARE)
     _require_enough(groups)
-    if any(not never_moved(q, joint, noise) for joint in np.flatnonzero(~active).tolist()):
+    if any(not stood_still(q, joint, noise) for joint in np.flatnonzero(~active).tolist()):
         fit, _ = fit_on_active_joints(q, tau, noise, LARGEST_ERROR)
         if fit.frequencies[:, ~active].any():
             raise Undetermined(

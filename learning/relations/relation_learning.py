@@ -98,12 +98,12 @@ def learn_relations(
             configurations, torques, _noise_of_pairs(noise, identified), largest_entry
         )
     except Undetermined as lacking:
-        if identified.order > 1 or identified.missing is None:
+        if identified.order > 1 or identified.decided:
             return identified
         missing = _both(identified.missing, str(lacking))
         return dataclasses.replace(identified, missing=missing, method=METHOD)
     paired = learned_from_pairs(pairs, snap)
-    if identified.missing is not None and identified.order == 1:
+    if not identified.decided and identified.order == 1:
         return _pairs_first(pairs, paired, identified)
     return _joined(pairs, paired, identified, snap)
 
@@ -189,7 +189,7 @@ def _joined(
             contradicted.append(learned)
             continue
         claimed = claim(examined, joined, snap)
-        if claimed.missing is None:
+        if claimed.decided:
             result = dataclasses.replace(claimed, missing=identified.missing)
             group = joined.group
     return dataclasses.replace(

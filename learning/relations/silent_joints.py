@@ -18,6 +18,10 @@ from symbolic.relations import wrap
 Array = NDArray[np.float64]
 
 NEVER_MOVED = 1e-6
+"""A joint without torque that moved no more than this [rad] stood still."""
+BARELY_MOVED = 0.01
+"""One that moved no more than this [rad], too little for the samples to tell, stood still too:
+other joints shake a joint that nothing holds and that no static torque can drive."""
 LEVEL = 1e-4
 ZERO_TORQUE = 1e-9
 
@@ -128,9 +132,11 @@ def depends_on_joint(
     return False
 
 
-def never_moved(q: Array, joint: int, noise: MeasurementNoise | None) -> bool:
-    """Say whether a joint stood still in all samples."""
-    allowed = max(NEVER_MOVED, 6.0 * noise.angle if noise else 0.0)
+def stood_still(
+    q: Array, joint: int, noise: MeasurementNoise | None, allowed: float = NEVER_MOVED
+) -> bool:
+    """Say whether a joint stayed within ``allowed`` [rad] of one angle in all samples."""
+    allowed = max(allowed, 6.0 * noise.angle if noise else 0.0)
     return bool((np.abs(wrap(q[:, joint] - q[0, joint])) <= allowed).all())
 
 
@@ -149,7 +155,7 @@ def silent_dependence(
     involved : list of int
         Joints the torque depends on after all.
     unmoved : list of int
-        Joints that never moved, so that nothing is known about them.
+        Joints that never moved, or too little to tell, so that nothing is known about them.
 
     Raises
     ------
@@ -158,12 +164,15 @@ def silent_dependence(
     """
     involved, unmoved = [], []
     for joint in np.flatnonzero(~active).tolist():
-        if never_moved(q, joint, noise):
+        if stood_still(q, joint, noise):
             unmoved.append(joint)
             continue
         try:
             dependent = depends_on_joint(q, tau, joint, fit, largest_error, noise or fit.noise)
         except Undetermined as lacking:
+            if stood_still(q, joint, noise, BARELY_MOVED):
+                unmoved.append(joint)
+                continue
             raise Undetermined(
                 f"torque on joint {joint + 1}: it was zero in all samples, and they cannot tell "
                 f"whether the other torques depend on its angle ({lacking})"

@@ -204,3 +204,16 @@ def test_bad_arrays_are_refused():
         identify(np.zeros((3, 2)), np.zeros((2, 2)))
     with pytest.raises(InputError, match="tau of sample 1"):
         identify(np.zeros((3, 2)), [[0, 0], [0, np.nan], [0, 0]])
+
+
+def test_joints_that_no_static_torque_drives_do_not_keep_relations_from_being_decided():
+    """The vertical first axis of an arm stands still: what the others showed is claimed."""
+    potential, _ = known_potential("ur5")
+    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (40, 6))
+    q[:, [0, 4, 5]] = 0.2
+    found = identify(q, potential.gradient(q))
+    assert found.order == 16
+    assert found.decided
+    assert found.unmoved == (0, 4, 5)
+    assert found.missing is not None
+    assert "joint 1, 5, 6 moves" in found.missing
