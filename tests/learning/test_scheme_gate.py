@@ -26,13 +26,13 @@ def confirmed(monkeypatch, orders, *, passed, n_min=8, confirmations=2, missing=
     left = iter(orders)
     settings = SchemeSettings(n_min=n_min, confirmations=confirmations, confirm=len(orders))
     scheme = Scheme(Still(), np.random.default_rng(0), lambda group, span: None, settings)
-    scheme.learned = SimpleNamespace(order=8, missing=None)
+    scheme.learned = SimpleNamespace(order=8, missing=None, decided=True)
     scheme.gates = [GateDecision(3, 8, passed, None)]
     monkeypatch.setattr(scheme_module, "next_torque", lambda *_: SimpleNamespace(torque=np.ones(2)))
     monkeypatch.setattr(
         scheme_module,
         "learn_relations",
-        lambda *_: SimpleNamespace(order=next(left), missing=missing),
+        lambda *_: SimpleNamespace(order=next(left), missing=missing, decided=missing is None),
     )
     assert len(list(scheme._confirm())) == len(orders)
     return scheme.gate_passed
