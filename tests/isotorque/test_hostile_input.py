@@ -139,7 +139,7 @@ def text_of(document):
 
 
 @given(st.data())
-@examples(8)
+@examples(6)
 def test_robot_files(answer, tmp_path_factory, data):
     text = mutated(data.draw, ROBOTS[data.draw(st.sampled_from(sorted(ROBOTS)))], NUMBERS)
     file = tmp_path_factory.mktemp("robot") / "arm.urdf"
@@ -203,7 +203,7 @@ CLAIM = {
 
 
 @given(st.data())
-@examples(8)
+@examples(6)
 def test_relations(answer, tmp_path_factory, data):
     file = tmp_path_factory.mktemp("relations") / "relations.json"
     file.write_bytes(text_of(disturbed(data.draw, CLAIM)))
@@ -288,7 +288,7 @@ ARMS = st.builds(
 
 
 @given(ARMS)
-@examples(6)
+@examples(3)
 def test_extreme_arms(answer, tmp_path_factory, text):
     folder = tmp_path_factory.mktemp("arm")
     file, few = folder / "arm.urdf", ["--samples", "8", "--quiet", "--learner"]
