@@ -107,7 +107,7 @@ def _judged(
     place, error = _place(relation, truth)
     integer = np.array_equal(relation.A, np.round(relation.A))
     bound = (relation_error_bound if integer else learned_map_bound)(
-        relation.A, relation.d, relation.Y, gravity.potential
+        relation.A, relation.unwrapped_d, relation.Y, gravity.potential
     )
     claim = f"relation {number}: {describe_relation(relation)}"
     return RelationReport(
