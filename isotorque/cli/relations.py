@@ -77,6 +77,7 @@ def relations(
     from isotorque.runs.recorded_robot import recorded_options
     from learning.recordings.recording_reader import RecordingReader
     from learning.relations.candidate_maps import judge_candidates
+    from learning.relations.chain_identification import with_chain
     from learning.relations.relation_learning import learn_relations
 
     noise = _noise(angle_noise, torque_noise)
@@ -90,6 +91,7 @@ def relations(
         limits = recorded_limits(reader)
     judged = judge_candidates(claims, samples.q, samples.tau, noise=noise)
     learned = learn_relations(samples.q, samples.tau, noise=noise)
+    learned = with_chain(learned, samples.q, samples.tau, noise=noise)
     document = relations_found(learned, samples, joints, limits)
     document["robot_options"] = recorded_options(run)
     write_whole(run / "relations.json", text.dumps(plain(document), indent=1) + "\n")

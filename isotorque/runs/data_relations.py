@@ -13,6 +13,8 @@ from learning.held_out import HeldOut, held_out
 from learning.learners.by_name import LearningTask, learner_by_name
 from learning.recordings.csv_data import StaticSamples
 from learning.relations.broken_symmetries import SupportedGroup, supported_group
+from learning.relations.chain_identification import METHOD as CHAIN
+from learning.relations.chain_identification import with_chain
 from learning.relations.relation_learning import learn_relations
 from learning.statistics.poses import group_poses
 from symbolic.gravity import GravityModel
@@ -102,8 +104,11 @@ class RelationsOfData:
         return DataRelations(group, tried, test, (*remarks, str(test)))
 
     def _learned(self, left_out: Flags) -> tuple[SymmetryGroup | None, tuple[str, ...]]:
-        found = learn_relations(self._samples.q[~left_out], self._samples.tau[~left_out])
+        q, tau = self._samples.q[~left_out], self._samples.tau[~left_out]
+        found = with_chain(learn_relations(q, tau), q, tau)
         said = f"{found.order} symmetry relations learned from the data"
+        if found.method == CHAIN:
+            said += ", by a rigid chain"
         if found.note:
             said += f"; {found.note}"
         if found.missing:

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from learning.export.c_tables import Tables
 from learning.export.space import Space
 
 Array = NDArray[np.float64]
@@ -124,9 +125,8 @@ class ChainRecursion:
         used = self._used()
         cos, sin = ({int(j): f"{f}{j}" for j in np.flatnonzero(used)} for f in "cs")
         for j in cos:
-            angle = f"q[{j}]" + (f" + {self.shifts[j].item()!r}" if self.shifts[j] else "")
-            code.define(cos[j], f"cos({angle})")
-            code.define(sin[j], f"sin({angle})")
+            code.define(cos[j], f"c[{j}]")
+            code.define(sin[j], f"s[{j}]")
         upward: dict[int, tuple[str, str, str]] = {}
         for j in cos:
             p = int(self.parents[j])
@@ -173,11 +173,19 @@ class ChainRecursion:
             _total((g, t), (b,)) for g, t, b in zip(self.gains, torques, self.biases, strict=True)
         ]
         body = code.needed_for(results)
-        if not any("q[" in line for line in body):
-            body.insert(0, "(void)q;")
+        tables = ""
+        if body:
+            constants = Tables()
+            constants.number("JOINTS", self.joints)
+            constants.add("SHIFT", self.shifts)
+            tables = f"{constants.source()}\n{C_TURN}\n"
+            body[:0] = ["double c[JOINTS], s[JOINTS];", "int j;", *C_TURNS]
+        else:
+            body = ["(void)q;"]
         body += [f"tau[{j}] = {result};" for j, result in enumerate(results)]
         text = "\n".join(f"    {line}" for line in body)
-        return f"void isotorque_gravity(const double *q, double *tau)\n{{\n{text}\n}}\n"
+        head = "void isotorque_gravity(const double *q, double *tau)"
+        return f"{tables}{head}\n{{\n{text}\n}}\n"
 
     def _used(self) -> NDArray[np.bool_]:
         """Which joints carry something: they, and no others, have torques."""
@@ -204,6 +212,38 @@ class ChainRecursion:
         """The form with these tables."""
         names = ("shifts", "offsets", "twists", "levers", "gains", "biases")
         return cls(arrays["parents"].astype(np.int64), *(arrays[name] for name in names))
+
+
+C_TURNS = ("for (j = 0; j < JOINTS; j++)", "    turn(q[j] + SHIFT[j], c + j, s + j);")
+C_TURN = """
+/* Cosine and sine of x [rad]: quarter turns are taken off, the rest is a polynomial (fdlibm's). */
+static void turn(double x, double *c, double *s)
+{
+    double quarters, r, z, even, odd;
+    int quadrant;
+    if (!(fabs(x) < 1e5)) {
+        *c = cos(x);
+        *s = sin(x);
+        return;
+    }
+    quarters = (double)(int)(x * 0.63661977236758134308 + (x < 0.0 ? -0.5 : 0.5));
+    quadrant = (int)quarters & 3;
+    r = x - quarters * 1.57079632673412561417;
+    r -= quarters * 6.07710050650619224932e-11;
+    z = r * r;
+    odd = r + r * z * (-1.66666666666666324348e-01 + z * (8.33333333332248946124e-03
+        + z * (-1.98412698298579493134e-04 + z * (2.75573137070700676789e-06
+        + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
+    even = 1.0 - 0.5 * z + z * z * (4.16666666666666019037e-02
+        + z * (-1.38888888888741095749e-03 + z * (2.48015872894767294178e-05
+        + z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09
+        - z * 1.13596475577881948265e-11)))));
+    z = quadrant & 1 ? odd : even;
+    r = quadrant & 1 ? even : odd;
+    *c = (quadrant + 1) & 2 ? -z : z;
+    *s = quadrant & 2 ? -r : r;
+}
+"""
 
 
 def _unit(angle: float) -> tuple[float, float]:

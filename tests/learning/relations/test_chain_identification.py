@@ -1,0 +1,64 @@
+"""Relations by a rigid chain where few samples are no obstacle, and silence where it is none."""
+
+import numpy as np
+import pytest
+
+from learning.relations.chain_identification import identify_by_chain, with_chain
+from learning.relations.errors_in_variables import MeasurementNoise
+from learning.relations.relation_learning import learn_relations
+from symbolic.gravity import GravityModel
+from symbolic.robots import load_robot
+from symbolic.symmetries import primary_symmetries
+
+
+def recording(name, count, noise=0.0, seed=0):
+    gravity = GravityModel(load_robot(name))
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-np.pi, np.pi, (count, gravity.n))
+    return gravity, q, gravity.torque(q) + noise * rng.normal(size=q.shape)
+
+
+@pytest.mark.parametrize(("name", "count"), [("3r", 6), ("ur5", 7), ("panda", 9)])
+def test_the_whole_group_from_a_handful_of_samples(name, count):
+    gravity, q, tau = recording(name, count)
+    exact = primary_symmetries(gravity.potential)
+    found = identify_by_chain(q, tau)
+    assert found.order == exact.order
+    assert all(relation in exact for relation in found.group)
+    assert found.missing is None
+    assert max(r.relation.bound.max() for r in found.relations) < 1e-6
+
+
+def test_bounds_hold_for_the_arm_that_was_measured():
+    gravity, q, tau = recording("ur5", 40, 0.05)
+    found = identify_by_chain(q, tau, noise=MeasurementNoise(0.0, 0.05))
+    test = np.random.default_rng(1).uniform(-np.pi, np.pi, (300, 6))
+    truth = gravity.torque(test)
+    for entry in found.relations:
+        relation = entry.relation
+        error = np.abs(gravity.torque(relation.configuration(test)) - relation.Y * truth)
+        assert np.all(error.max(axis=0) <= relation.bound + 1e-12)
+
+
+def test_it_speaks_only_where_others_lack_samples():
+    _, q, tau = recording("panda", 12)
+    alone = learn_relations(q, tau)
+    assert alone.missing is not None
+    assert with_chain(alone, q, tau).method == "rigid chain"
+    _, q, tau = recording("2r", 20)
+    enough = learn_relations(q, tau)
+    assert with_chain(enough, q, tau) is enough
+
+
+@pytest.mark.parametrize("spoil", ["few", "zero", "spring", "rough"])
+def test_no_chain_no_relations(spoil):
+    _, q, tau = recording("panda", 12)
+    if spoil == "few":
+        q, tau = q[:3], tau[:3]
+    elif spoil == "zero":
+        tau = 0.0 * tau
+    elif spoil == "spring":
+        tau = tau + 5.0 * q
+    else:  # so much noise that no relation would mean anything
+        tau = tau + 3.0 * np.random.default_rng(1).normal(size=q.shape)
+    assert identify_by_chain(q, tau) is None
