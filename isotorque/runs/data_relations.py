@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from learning.held_out import HeldOut, held_out
 from learning.learners.by_name import LearningTask, learner_by_name
+from learning.learners.rigid.verdict import NotAccepted
 from learning.recordings.csv_data import StaticSamples
 from learning.relations.broken_symmetries import SupportedGroup, supported_group
 from learning.relations.chain_identification import METHOD as CHAIN
@@ -123,13 +124,16 @@ class RelationsOfData:
         if self._poses.count < 2:
             return None, self._nobody()
         name = self._learner if learner is None else learner
-        found = held_out(
-            lambda: learner_by_name(name, group, self._task),
-            self._samples.q,
-            self._samples.tau,
-            np.random.default_rng(self._task.seed),
-            poses=self._poses,
-        )
+        try:
+            found = held_out(
+                lambda: learner_by_name(name, group, self._task),
+                self._samples.q,
+                self._samples.tau,
+                np.random.default_rng(self._task.seed),
+                poses=self._poses,
+            )
+        except NotAccepted:  # from fewer rows than there are; what all of them say is seen later
+            return None, self._nobody()
         return found, found.outliers
 
     def _screened(self) -> Flags:

@@ -202,5 +202,12 @@ def fitted_with_curve(
         else:
             learner = learner_by_name(name, group, task).fit(q[:count], torque[:count])
         done = count
-        curve.append(test.point(count, learner))
+        if count == len(q) or is_usable(learner):
+            curve.append(test.point(count, learner))
     return learner, tuple(curve)
+
+
+def is_usable(learner: Any) -> bool:
+    """Whether a fitted learner answers: a rigid chain does not before it is accepted."""
+    verdict = getattr(learner, "verdict_", None)
+    return verdict is None or verdict.accepted

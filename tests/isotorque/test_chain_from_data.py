@@ -7,6 +7,7 @@ import pinocchio as pin
 import pytest
 
 from isotorque.cli.main import status
+from learning.recordings.csv_data import StaticSamples, write_csv
 from symbolic.robots import load_robot
 from tests.learning.export.compiled import build, call, needs_cc
 
@@ -110,3 +111,22 @@ def test_bad_input_is_one_line(options, words, tmp_path, monkeypatch, capsys):
     assert words in error
     assert len(error.splitlines()) == 1
     assert not (tmp_path / "x").exists()
+
+
+@pytest.mark.parametrize(("poses", "code"), [(6, 0), (3, 2)])
+def test_few_poses_beside_a_robot(poses, code, tmp_path, capsys):
+    """Six are enough though parts of them are not; of three it is said how many are missing."""
+    rng, robot = np.random.default_rng(0), load_robot("panda")
+    model, data = robot.model, robot.model.createData()
+    q = rng.uniform(-2.5, 2.5, (poses, 7))
+    tau = np.array([pin.computeGeneralizedGravity(model, data, x) for x in q])
+    file = tmp_path / "arm.csv"
+    write_csv(file, StaticSamples(q, tau), robot.joint_names)
+    options = ("--data", file, "--learner", "rigid-chain", "--out", tmp_path / "out", "--quiet")
+    assert isotorque("learn", "panda", *options) == code
+    captured = capsys.readouterr()
+    if code == 0:
+        assert isotorque("verify", tmp_path / "out", "--robot", "panda") == 0
+    else:
+        assert captured.err.count("\n") == 1
+        assert "1 more poses" in captured.err

@@ -18,7 +18,7 @@ from learning.learners.rigid.gains import GainGroup, gain_groups, with_fixed_sca
 from learning.learners.rigid.joint_columns import offset_columns
 from learning.learners.rigid.snapping import LEVEL, SnappedChain, snapped
 from learning.learners.rigid.standard_errors import TorqueErrors
-from learning.learners.rigid.verdict import Verdict
+from learning.learners.rigid.verdict import NotAccepted, Verdict
 from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
 from learning.learners.saved_learner import SavedLearner
 from learning.torque_score import TorqueRegressor
@@ -167,7 +167,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
 
         Raises
         ------
-        InputError
+        NotAccepted
             If no chain was accepted.
         """
         q = self._asked(X)
@@ -231,17 +231,12 @@ class RigidChain(TorqueRegressor, SavedLearner):
 
         Raises
         ------
-        InputError
-            If it was not accepted.
+        NotAccepted
+            If it was not.
         """
         fitted(self)
         if not self.fit_.verdict.accepted:
-            raise InputError(
-                "rigid chain",
-                "fit",
-                f"not accepted: {self.fit_.verdict}",
-                self.fit_.remark or "samples of a rigid arm",
-            )
+            raise NotAccepted(self.fit_.verdict, self.fit_.remark)
         return self.fit_.chain
 
     @property

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from symbolic.errors import InputError
+
 
 class Verdict(StrEnum):
     """How the search for a chain ended.
@@ -23,3 +25,20 @@ class Verdict(StrEnum):
     def accepted(self) -> bool:
         """Whether the chain may be used."""
         return self in (Verdict.ROUNDING, Verdict.CHI_SQUARE, Verdict.HELD_OUT)
+
+
+class NotAccepted(InputError):
+    """A chain that was not accepted was asked for what it would say.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        Why it was not accepted.
+    remark : str
+        What is missing or speaks against it.
+    """
+
+    def __init__(self, verdict: Verdict, remark: str) -> None:
+        self.verdict = verdict
+        accepted = remark or "samples of a rigid arm"
+        super().__init__("rigid chain", "fit", f"not accepted: {verdict}", accepted)

@@ -11,7 +11,7 @@ import pytest
 from sklearn.base import clone
 
 from learning.learners.rigid.rigid_chain import RigidChain
-from learning.learners.rigid.verdict import Verdict
+from learning.learners.rigid.verdict import NotAccepted, Verdict
 from learning.model_files import SavedModel, load_model, save_model
 from symbolic.errors import InputError
 from symbolic.gravity import GravityModel
@@ -45,8 +45,9 @@ def test_what_is_not_accepted_is_neither_predicted_nor_saved(tmp_path):
     learner = RigidChain(max_starts=10).fit(q, torque)
     assert learner.verdict_ is Verdict.TOO_FEW
     for use in (learner.predict, learner.jacobian):
-        with pytest.raises(InputError, match=r"not accepted.*more poses"):
+        with pytest.raises(NotAccepted, match=r"not accepted.*more poses") as refused:
             use(q)
+        assert refused.value.verdict is Verdict.TOO_FEW
     with pytest.raises(InputError, match="not accepted"):
         save_model(SavedModel(learner, "panda", "", NAMES, {}), tmp_path)
     assert not list(tmp_path.iterdir())
