@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from learning.learners.recursive_least_squares import (
         RecursiveLeastSquares as RecursiveLeastSquares,
     )
+    from learning.learners.rigid.rigid_chain import RigidChain as RigidChain
     from learning.learners.static_regressor import StaticRegressor as StaticRegressor
     from learning.learners.trigonometric import EquivariantTrigonometric as EquivariantTrigonometric
     from learning.model_files import SavedModel as SavedModel
@@ -94,6 +95,7 @@ _HOME = {
     "ProfileArm": "learning.arm",
     "Recording": "learning.recordings.recording",
     "RecursiveLeastSquares": "learning.learners.recursive_least_squares",
+    "RigidChain": "learning.learners.rigid.rigid_chain",
     "Robot": "symbolic.robots",
     "SamplingRegion": "learning.sampling.sampling_region",
     "SavedModel": "learning.model_files",

@@ -232,12 +232,6 @@ def polished(samples: ChainSamples, found: SearchedChain, model: ChainModel) -> 
     return SearchedChain(_orthonormal(chain), cost, found.whitening)
 
 
-def whitened_residuals(samples: ChainSamples, found: SearchedChain) -> Array:
-    """Torque errors in units of their standard deviations, (m, n)."""
-    rest = samples.torque - found.chain.torque(samples.q)
-    return np.einsum("kij,kj->ki", found.whitening, rest)
-
-
 def best_of(found: Sequence[SearchedChain]) -> SearchedChain:
     """The chain that costs least."""
     return min(found, key=lambda f: f.cost)

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.learners.rigid.chain_fit import ChainFit, fit_at, fit_chain
+from learning.learners.rigid.acceptance import fit_chain
+from learning.learners.rigid.chain_fit import ChainFit, fit_at
 from learning.learners.rigid.chain_parameters import ChainParameters, checked_parents, serial
 from learning.learners.rigid.chain_samples import ChainSamples, noise_by_joint
 from learning.learners.rigid.chain_search import ChainModel

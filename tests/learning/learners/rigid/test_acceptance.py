@@ -5,11 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.learners.rigid.chain_fit import ChainFit, fit_chain, poses_needed
+from learning.learners.rigid.acceptance import fit_chain
+from learning.learners.rigid.chain_fit import ChainFit
 from learning.learners.rigid.chain_parameters import serial
 from learning.learners.rigid.chain_samples import ChainSamples
 from learning.learners.rigid.chain_search import ChainModel
 from learning.learners.rigid.joint_columns import offset_columns
+from learning.learners.rigid.poses_needed import poses_needed
 from learning.learners.rigid.verdict import Verdict
 from symbolic.gravity import GravityModel
 from symbolic.robots import load_robot
