@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 
 from learning.learners.rigid.chain_parameters import ChainParameters
 from learning.learners.rigid.chain_samples import ChainSamples
@@ -69,10 +70,15 @@ class ChainFit:
     def spread(self) -> float:
         """Factor from stated or estimated noise to what the errors are known to be.
 
-        1 with noise; for exact samples whatever rounding there is.
+        1 where noise was stated. Where it was estimated, three standard errors are made to mean
+        what they mean for a normal variable (Student's quantile, degrees of freedom per joint).
+        For exact samples whatever rounding there is.
         """
         if self.verdict is Verdict.ROUNDING:
             return max(1e-4, float(np.sqrt(self.cost / max(self.degrees, 1))))
+        if self.verdict is Verdict.HELD_OUT:
+            freedom = max(self.degrees / self.model.n, 1.0)
+            return float(stats.t.isf(stats.norm.sf(3.0), freedom)) / 3.0
         return 1.0
 
     def standard_error(self, q: Array) -> Array:

@@ -148,7 +148,7 @@ def _bounds(
         error = linear
         if len(here.replicas):
             changed = there.replicas - there.torque - Y * (here.replicas - here.torque)
-            error = np.maximum(linear, np.sqrt(np.mean(changed**2, axis=0)))
+            error = np.maximum(linear, fit.spread * np.sqrt(np.mean(changed**2, axis=0)))
         measured = (np.abs(fitted) + DEVIATIONS * error).max(axis=0)
         yield np.maximum(np.abs(special.gains) * proved + measured, floor)
 

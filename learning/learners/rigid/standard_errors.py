@@ -34,8 +34,8 @@ class TorqueErrors:
     meaning, and the linear standard error says too little there (its 90 % band covers 80 to 84 %
     on the ur5). The experiment is therefore repeated: noise of the stated or estimated size is
     added to the torques of the fitted chain, the chain fitted again, a hundred times (parametric
-    bootstrap). The larger of both standard errors counts, torque by torque. Coverage:
-    docs/rigid-chain.md.
+    bootstrap). The larger of both standard errors counts, torque by torque; where noise was
+    estimated it is larger by `ChainFit.spread`. Coverage: docs/rigid-chain.md.
 
     References
     ----------
@@ -56,7 +56,7 @@ class TorqueErrors:
         square = np.zeros_like(torque)
         for replica in replicas:
             square += (replica.torque(q) - torque) ** 2
-        return np.maximum(linear, np.sqrt(square / len(replicas)))
+        return np.maximum(linear, fit.spread * np.sqrt(square / len(replicas)))
 
     @cached_property
     @one_thread()

@@ -94,19 +94,21 @@ def test_more_samples_are_learned_from_the_last_chain():
     assert error < 0.05
 
 
-@pytest.mark.parametrize(("name", "poses"), [("2r", 10), ("ur5", 20), ("panda", 20)])
-def test_standard_errors_are_calibrated(name, poses):
+@pytest.mark.parametrize("stated", [True, False])
+@pytest.mark.parametrize(("name", "poses"), [("2r", 12), ("ur5", 20), ("panda", 20)])
+def test_standard_errors_are_calibrated(name, poses, stated):
     inside, within_three = [], []
-    for seed in range(25):
+    for seed in range(20):
         gravity, q, torque = measured(name, poses, seed, 0.05)
-        learner = RigidChain(torque_noise=0.05).fit(q, torque)
+        learner = RigidChain(torque_noise=0.05 if stated else None).fit(q, torque)
         asked = random_poses(np.random.default_rng(99), 60, gravity.n)
         truth = gravity.torque(asked)
         loaded = np.abs(truth).max(axis=0) > 1e-9
         z = np.abs(learner.predict(asked) - truth) / learner.standard_error(asked)
         inside.append(np.mean(z[:, loaded] < 1.645))
         within_three.append(np.mean(z[:, loaded] < 3.0))
-    assert 0.82 < np.mean(inside) < 0.96
+    # errors from estimated noise are widened for three of them: one covers more than it must
+    assert 0.82 < np.mean(inside) < (0.96 if stated else 0.99)
     assert np.mean(within_three) > 0.98
 
 
