@@ -48,7 +48,7 @@ def visited_torques(fit: FittedPotential, q: ArrayLike, *, spacing: float = SPAC
     Examples
     --------
     >>> from learning.relations.potential_fit import all_frequencies, fit_potential
-    >>> samples = np.array([[-2.0], [-1.5], [-0.4]])
+    >>> samples = np.array([[-2.0], [-1.5], [-1.0], [-0.4]])
     >>> fit = fit_potential(samples, 5.0 * np.cos(samples), all_frequencies(1))
     >>> swing = np.linspace(-1.0, 1.0, 200)[:, None]  # a pendulum swings past the horizontal
     >>> torques = visited_torques(fit, swing, spacing=0.25)

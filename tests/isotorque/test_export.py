@@ -13,6 +13,7 @@ from learning.learners.gaussian_process import SymmetricGaussianProcess
 from learning.learners.local_linear_map import LocalLinearMap
 from learning.learners.network import FeedForwardNetwork
 from learning.learners.recursive_least_squares import RecursiveLeastSquares
+from learning.learners.rigid.rigid_chain import RigidChain
 from learning.learners.static_regressor import StaticRegressor
 from learning.learners.trigonometric import EquivariantTrigonometric
 from learning.model_files import SavedModel, save_model
@@ -28,6 +29,7 @@ LEARNERS = [
     (FeedForwardNetwork(5, **QUICK), "tanh units"),
     (EquivariantTrigonometric(), "waves"),
     (StaticRegressor("2r"), "waves"),
+    (RigidChain(), "rigid chain"),
     (SymmetricGaussianProcess(0.1, length_scale=1.5), "kernels"),
 ]
 

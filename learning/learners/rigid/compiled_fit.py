@@ -9,9 +9,9 @@ unknowns may change; ``canonical`` whether tangents are those of offset and twis
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from learning.learners.rigid.compiled_torque import chain_jacobian
+from symbolic.compiled import compiled
 
 RIDGE = 1e-12
 """Added to the normal equations of columns scaled to length 1, against exact dependency."""
@@ -25,7 +25,7 @@ MOST_GAIN = 50.0
 """Gains may grow to so many times what they started from."""
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def rotation_about(vector):
     """Exp of a rotation vector (3,) [rad] (Rodrigues)."""
     x, y, z = vector[0], vector[1], vector[2]
@@ -44,7 +44,7 @@ def rotation_about(vector):
     return R
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def set_directions(rotations, canonical, directions):
     """Tangents: about y and x; canonical: offset (about the parent's z), then twist (about x)."""
     for j in range(len(rotations)):
@@ -56,7 +56,7 @@ def set_directions(rotations, canonical, directions):
         directions[j, 1, 0] = 1.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def turn(rotations, directions, steps):
     """Rotations moved along their tangents, the first then the second."""
     result = np.empty_like(rotations)
@@ -67,7 +67,7 @@ def turn(rotations, directions, steps):
     return result
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def product(A, B):
     """Product of two (3, 3) matrices."""
     C = np.empty((3, 3))
@@ -77,13 +77,13 @@ def product(A, B):
     return C
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def gram(rows):
     """``rows^T rows``."""
     return rows.T @ rows
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def against(rows, values):
     """``rows^T values``."""
     result = np.zeros(rows.shape[1])
@@ -93,7 +93,7 @@ def against(rows, values):
     return result
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def solve_definite(matrix, right):
     """Solve ``matrix x = right`` (p, k) by Cholesky's factors; both are overwritten.
 
@@ -124,7 +124,7 @@ def solve_definite(matrix, right):
     return right
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def fill(
     parents, rotations, levers, gains, directions, q, whitening, extra, free_turns, free_levers,
     free_gains, rows, torque, turned, leant, stiffness,
@@ -163,7 +163,7 @@ def fill(
                     c += 1
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def whitened(values, whitening):
     """Values (m, n) times the whitening of their pose, flat."""
     m, n = values.shape
@@ -175,7 +175,7 @@ def whitened(values, whitening):
     return result
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def solved(design, target):
     """Least squares by normal equations of scaled columns, refined once; and the residual."""
     normal = gram(design)
@@ -204,7 +204,7 @@ def solved(design, target):
     return solution, rest
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def levenberg_marquardt(
     parents, rotations, gains, q, torques, whitening, extra, free_turns, free_levers, free_gains,
     canonical, iterations, progress, enough,
@@ -346,7 +346,7 @@ def levenberg_marquardt(
     return rotations, levers, gains, linear[c:].copy(), cost, taken
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def fill_linear(parents, rotations, gains, q, whitening, extra, free_levers, rows, first, leant):
     """Whitened derivatives by levers and coefficients, into the columns of rows from ``first``."""
     m, n = q.shape
@@ -370,7 +370,7 @@ def fill_linear(parents, rotations, gains, q, whitening, extra, free_levers, row
                     c += 1
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def lever_columns(parents, rotations, q, leant):
     """Derivatives of the torques by the levers alone, into ``leant`` (m, n, 2 n)."""
     m, n = q.shape

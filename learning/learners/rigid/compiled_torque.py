@@ -8,10 +8,11 @@ joint's own axis; ``q`` (m, n) [rad]; ``directions`` (n, 2, 3), two tangent vect
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from symbolic.compiled import compiled
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def sweep(parents, rotations, levers, angles, placed, gravity, moments):
     """Walk out for gravity in every frame, and back for the moments carried, of one pose.
 
@@ -56,7 +57,7 @@ def sweep(parents, rotations, levers, angles, placed, gravity, moments):
                 )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def chain_torque(parents, rotations, levers, q, torque):
     """Torques that hold the chain, into ``torque`` (m, n) [N m]."""
     m, n = q.shape
@@ -67,7 +68,7 @@ def chain_torque(parents, rotations, levers, q, torque):
             torque[k, j] = moments[j, 0] * gravity[j, 1] - moments[j, 1] * gravity[j, 0]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def chain_jacobian(parents, rotations, levers, directions, q, torque, turned, leant, stiffness):
     """Torques and their derivatives.
 
