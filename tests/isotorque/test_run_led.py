@@ -59,7 +59,9 @@ def test_an_arm_that_nothing_holds_is_led_and_that_is_said(tmp_path, capsys):
     assert "guided physics" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("strategy", ["lattice", "goal-babbling", "motor-babbling"])
+@pytest.mark.parametrize(
+    "strategy", ["lattice", pytest.param("goal-babbling", marks=pytest.mark.slow), "motor-babbling"]
+)
 def test_every_strategy_ends_with_a_report(strategy, tmp_path, capsys):
     words = ["2r", "--strategy", strategy, "--out", str(tmp_path), *FAST]
     words[words.index("--samples") + 1] = "32"

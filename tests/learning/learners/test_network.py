@@ -81,7 +81,7 @@ def test_periodic_with_circles_as_inputs(seed, mode):
 @pytest.mark.parametrize(
     ("robot", "samples", "hidden", "demanded"),
     [
-        ("2r", 255, 18, 1e-4),
+        pytest.param("2r", 255, 18, 1e-4, marks=pytest.mark.slow),
         ("2r", 64, 18, 5e-4),
         ("3r", 65, 18, 0.02),
         pytest.param("3r", 300, 30, 0.002, marks=pytest.mark.slow),
