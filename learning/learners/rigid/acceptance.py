@@ -41,6 +41,8 @@ RIVAL_COST = 30.0
 """Chains that cost more by this are excluded (likelihood ratio 3e-7)."""
 RIVAL_SHARE = 0.05
 """Chains whose torques differ by more, anywhere, relative to the torque (RMS), are others."""
+OPEN_SHARE = 1.0
+"""A torque whose standard error elsewhere is as large as itself (both RMS) is not known."""
 
 
 @one_thread()
@@ -171,9 +173,19 @@ def _within_noise(fit: StartSearch) -> ChainFit:
         )
         return fit.result(Verdict.AMBIGUOUS, best, remark=remark, p_value=likely)
     result = fit.result(Verdict.CHI_SQUARE, best, p_value=likely)
-    if not np.isfinite(result.standard_error(probe_poses(model.n))).all():
+    if not _known_elsewhere(result):
         return fit.result(Verdict.TOO_FEW, best, remark=_too_few(fit), p_value=likely)
     return result
+
+
+def _known_elsewhere(result: ChainFit) -> bool:
+    """Whether the samples say something of the torque at other poses."""
+    q = probe_poses(result.chain.n)
+    error = result.standard_error(q)
+    if not np.isfinite(error).all():
+        return False
+    size = float(np.sqrt(np.mean(result.chain.torque(q) ** 2)))
+    return float(np.sqrt(np.mean(error**2))) < OPEN_SHARE * size
 
 
 def _p_value(fit: StartSearch, found: SearchedChain) -> float:
@@ -205,6 +217,7 @@ def _by_held_out(fit: StartSearch) -> ChainFit:
     spare = exact.equations - most_parameters(model)
     accepted = HELD_OUT_SHARE * min(1.0, spare / (4 * model.n)) * size
     judged: ChainFit | None = None
+    left_open: ChainFit | None = None
     least = np.inf
     while True:
         best = best_of(fit.found) if fit.found else None
@@ -216,16 +229,19 @@ def _by_held_out(fit: StartSearch) -> ChainFit:
             result = fit.result(Verdict.HELD_OUT, found, held_out=error)
             fit.samples = exact
             if error <= accepted:
-                if np.isfinite(result.standard_error(probe_poses(model.n))).all():
+                if _known_elsewhere(result):
                     return result
                 fit.samples = noisy
-                return fit.result(Verdict.TOO_FEW, found, remark=_too_few(fit), held_out=error)
+                left_open = fit.result(Verdict.TOO_FEW, found, remark=_too_few(fit), held_out=error)
+                fit.samples = exact  # go on: another start may explain the samples exactly
             judged = result
         if fit.exhausted:
             break
         again = _to_rounding(fit, fit.starts + 1)
         if again is not None:
             return again
+    if left_open is not None:
+        return left_open
     remark = _misfit(fit)
     if judged is None:
         return fit.refused(Verdict.MISFIT, remark)
