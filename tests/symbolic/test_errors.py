@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from learning.learners.rigid.verdict import NotAccepted, Verdict
 from learning.recordings.recording_error import RecordingError
 from learning.relations.errors_in_variables import Undetermined
 from symbolic.errors import InputError, visible
@@ -20,6 +21,7 @@ RAISED = [
     RecordingError("run.sqlite", "robot", "2r", "3r"),
     GravityMismatch("arm", "elbow", 0.25, 1e-9),
     Undetermined("12 more samples"),
+    NotAccepted(Verdict.TOO_FEW, "2 more poses"),
 ]
 HIDDEN = st.characters(categories=["Cc", "Cf", "Zl", "Zp"])  # Cf holds what turns text around
 
