@@ -161,7 +161,9 @@ def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quie
 
 
 def _print_chain(document: dict[str, Any]) -> None:
-    print(f"{document['samples']} samples of {len(document['joints'])} joints:", end=" ")
+    rows, poses = document["samples"], document["poses"]
+    count = f"{rows} samples" if poses == rows else f"{rows} samples in {poses} poses"
+    print(f"{count} of {len(document['joints'])} joints:", end=" ")
     if not document["accepted"]:
         print(f"no rigid chain is accepted, {document['verdict']}")
         print(f"missing: {document['missing']}")

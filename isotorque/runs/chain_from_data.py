@@ -15,8 +15,10 @@ from isotorque.files import output_directory, write_whole
 from isotorque.runs.stages import DATABASE
 from learning.learners.rigid.chain_symmetries import ChainSymmetries
 from learning.learners.rigid.rigid_chain import RigidChain
+from learning.learners.rigid.verdict import Verdict
 from learning.model_files import SavedModel, load_model, save_model
 from learning.recordings.csv_data import StaticSamples, joint_names_of, read_csv
+from learning.statistics.poses import group_poses
 from verify.relation_files import relations_document
 
 Array = NDArray[np.float64]
@@ -95,6 +97,7 @@ class ChainFromData:
             "learner": "rigid-chain",
             "strategy": "data",
             "samples": len(self.samples.q),
+            "poses": self.learner.n_samples_seen_,
             "verdict": str(fit.verdict),
             "accepted": fit.verdict.accepted,
             "missing": fit.remark or None,
@@ -151,6 +154,7 @@ def chain_relations(
     return relations_document(group, joint_names, generators=group.order > MOST_LISTED) | {
         "method": "rigid chain",
         "statement": symmetries.statement,
+        "corrections": symmetries.corrections.tolist() if group.order <= MOST_LISTED else None,
         "hypotheses": [str(h) for h in symmetries.snapped.hypotheses],
         "samples": samples,
     }
@@ -176,15 +180,28 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
 
     Notes
     -----
-    Joints are in series in the order of their columns.
+    Joints are in series in the order of their columns. Rows of one pose count as one sample. Where
+    the samples are explained neither exactly nor within stated noise, a constant torque per joint
+    is fitted too: left out, it would be taken for noise.
     """
     names = joint_names_of(options.file)
     samples = read_csv(options.file, names)
+    poses = group_poses(samples.q)
+    q, tau = samples.q, samples.tau
+    if poses.repeated:
+        q, tau = poses.configurations(q), poses.means(tau)
     stated = options.torque_noise is not None or options.angle_noise is not None
-    learner = RigidChain(
-        torque_noise=(options.torque_noise or 0.0) if stated else None,
-        angle_noise=options.angle_noise or 0.0,
-        random_state=options.seed,
-    ).fit(samples.q, samples.tau)
+
+    def fitted(offsets: bool) -> RigidChain:
+        return RigidChain(
+            torque_noise=(options.torque_noise or 0.0) if stated else None,
+            angle_noise=options.angle_noise or 0.0,
+            unknown_offsets=offsets,
+            random_state=options.seed,
+        ).fit(q, tau)
+
+    learner = fitted(False)
+    if learner.verdict_ not in (Verdict.ROUNDING, Verdict.CHI_SQUARE, Verdict.TOO_FEW):
+        learner = fitted(True)
     symmetries = learner.symmetries() if learner.verdict_.accepted else None
     return ChainFromData(options, names, samples, learner, symmetries)

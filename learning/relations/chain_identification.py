@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from learning.learners.rigid.rigid_chain import RigidChain
+from learning.learners.rigid.verdict import Verdict
 from learning.relations.errors_in_variables import MeasurementNoise
 from learning.relations.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
 from learning.relations.samples import static_samples
+
+Array = NDArray[np.float64]
 
 METHOD = "rigid chain"
 LARGEST_ERROR = 0.05
 """Relations are claimed if none can be wrong by more, relative to the largest torque."""
 STARTS = 60
+MOST_PER_JOINT = 6
+"""Parameters per joint of a chain with constants: four, and what constants add."""
+CONSTANT_SEEN = 20.0
+"""A constant is seen where it lowers the squares of a joint by so many of what each pose leaves."""
 FEW_JOINTS = 3
 """Up to so many joints a potential of waves needs no more than nine samples: its word stands."""
 
@@ -85,7 +92,7 @@ def identify_by_chain(
         angle_noise=0.0 if noise is None else noise.angle,
         max_starts=STARTS,
     ).fit(configurations, torques)
-    if not learner.verdict_.accepted:
+    if not learner.verdict_.accepted or _shows_constants(learner, configurations, torques):
         return None
     found = learner.symmetries()
     worst = max(float(relation.bound.max(initial=0.0)) for relation in found.group)
@@ -103,3 +110,19 @@ def identify_by_chain(
         for relation in found.group
     )
     return LearnedSymmetries(found.group, relations, None, METHOD)
+
+
+def _shows_constants(learner: RigidChain, q: Array, tau: Array) -> bool:
+    """Whether constant torques explain what a chain with noise estimated took for noise.
+
+    Relations that change their sign would then not hold of the measured torque.
+    """
+    if learner.verdict_ is not Verdict.HELD_OUT:
+        return False
+    other = RigidChain(unknown_offsets=True, max_starts=STARTS).fit(q, tau)
+    if not other.verdict_.accepted:
+        return False
+    without = ((tau - learner.predict(q)) ** 2).sum(axis=0)
+    left = ((tau - other.predict(q)) ** 2).sum(axis=0)
+    spare = max(len(q) - MOST_PER_JOINT, 1)
+    return bool((without > left * (1.0 + CONSTANT_SEEN / spare)).any())

@@ -130,3 +130,34 @@ def test_few_poses_beside_a_robot(poses, code, tmp_path, capsys):
     else:
         assert captured.err.count("\n") == 1
         assert "1 more poses" in captured.err
+
+
+def test_a_constant_torque_is_no_noise_and_relations_say_what_they_speak_of(tmp_path, capsys):
+    rng = np.random.default_rng(3)
+    q = rng.uniform(-2, 2, (80, 2))
+    lower = 6.13 * np.cos(q.sum(axis=1))
+    tau = np.stack([18.39 * np.cos(q[:, 0]) + lower, lower + 0.5], axis=1)
+    tau += 0.05 * rng.normal(size=tau.shape)
+    write_csv(tmp_path / "poses.csv", StaticSamples(q, tau), ["q1", "q2"])
+    assert isotorque("learn", "--data", tmp_path / "poses.csv", "--out", tmp_path) == 0
+    assert "hold of gravity, of the measured torque with corrections" in capsys.readouterr().out
+    document = json.loads((tmp_path / "relations.json").read_text())
+    for relation, c in zip(document["relations"], document["corrections"], strict=True):
+        flips = (
+            np.diag(relation["Y"])[1] < 0 if np.ndim(relation["Y"]) == 2 else relation["Y"][1] < 0
+        )
+        assert abs(c[1] - (1.0 if flips else 0.0)) < 0.1
+
+
+def test_rows_of_one_pose_are_one_sample(tmp_path, capsys):
+    rng = np.random.default_rng(4)
+    poses = rng.uniform(-2, 2, (8, 2))
+    lower = 6.13 * np.cos(poses.sum(axis=1))
+    tau = np.stack([18.39 * np.cos(poses[:, 0]) + lower, lower], axis=1)
+    tau += np.sign(rng.normal(size=tau.shape)) * [1.2, 0.4]  # stiction: one value a pose
+    rows = np.repeat(poses, 25, axis=0) + 1e-5 * rng.normal(size=(200, 2))
+    torques = np.repeat(tau, 25, axis=0) + 0.02 * rng.normal(size=(200, 2))
+    write_csv(tmp_path / "poses.csv", StaticSamples(rows, torques), ["q1", "q2"])
+    assert isotorque("learn", "--data", tmp_path / "poses.csv", "--out", tmp_path / "out") == 1
+    assert "200 samples in 8 poses" in capsys.readouterr().out
+    assert not (tmp_path / "out" / "model.json").exists()

@@ -59,7 +59,7 @@ class ChainSymmetries:
         """What is claimed, in words."""
         count = len(self.snapped.hypotheses)
         if not count:
-            return "true of the fitted chain; nothing was snapped"
+            return "true of the fitted chain; nothing was snapped" + self._object
         text = (
             "true of the snapped chain, which the data do not contradict, "
             f"p = {self.snapped.p_value:.2g} ({count} hypotheses)"
@@ -67,7 +67,18 @@ class ChainSymmetries:
         lever = self.snapped.smallest_visible_lever
         if np.isfinite(lever) and lever > 0:
             text += f"; smallest lever that would have been seen everywhere: {lever:.2g} N m"
-        return text
+        return text + self._object
+
+    @property
+    def _object(self) -> str:
+        """What the relations speak of, where that is not the measured torque."""
+        if not self.corrections.any():
+            return ""
+        sizes = ", ".join(f"{x:.3g}" for x in np.abs(self.corrections).max(axis=0) / 2.0)
+        return (
+            f"; joints have constant torques of at most ({sizes}) N m beside gravity: relations "
+            "that change their sign hold of gravity, of the measured torque with corrections"
+        )
 
 
 @one_thread()

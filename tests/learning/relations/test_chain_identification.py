@@ -62,3 +62,13 @@ def test_no_chain_no_relations(spoil):
     else:  # so much noise that no relation would mean anything
         tau = tau + 3.0 * np.random.default_rng(1).normal(size=q.shape)
     assert identify_by_chain(q, tau) is None
+
+
+@pytest.mark.parametrize(("constant", "claimed"), [(0.0, True), (0.5, False)])
+def test_nothing_is_claimed_where_a_constant_torque_passes_for_noise(constant, claimed):
+    gravity = GravityModel(load_robot("panda"))
+    rng = np.random.default_rng(0)
+    q = rng.uniform(-2.5, 2.5, (40, 7))
+    tau = gravity.torque(q) + 0.05 * rng.normal(size=q.shape)
+    tau[:, 3] += constant
+    assert (identify_by_chain(q, tau) is not None) is claimed
