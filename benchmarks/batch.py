@@ -36,16 +36,17 @@ from benchmarks.batch_learners import learners, runs
 from benchmarks.batch_tables import Row, equal_errors, tables
 from benchmarks.clear_errors import clear_errors
 from benchmarks.document import write_between
-from learning.relations.relation_learning import learn_relations
-from learning.sampling.lattice import lattice_samples
-from learning.sampling.sampling_region import SamplingRegion
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryGroup, identity
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
-from verify.paper_targets import paper_targets
+from isotorque.learning.relations.learn_relations import learn_relations
+from isotorque.learning.sampling.lattice import lattice_samples
+from isotorque.learning.sampling.sampling_region import SamplingRegion
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.groups.symmetry_relation import identity
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.models.paper_targets import paper_targets
 
 PAGE = Path(__file__).parents[1] / "docs" / "batch.md"
 DENSE = 1500

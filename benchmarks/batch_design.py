@@ -23,16 +23,18 @@ import numpy as np
 
 from benchmarks.clear_errors import clear_errors
 from benchmarks.document import write_between
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.trigonometric import EquivariantTrigonometric
-from learning.relations.errors_in_variables import MeasurementNoise
-from learning.sampling.lattice import lattice_samples
-from learning.sampling.optimal_design import d_optimal, least_variance
-from learning.sampling.sampling_region import SamplingRegion
-from symbolic.domain import FundamentalDomain
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.learning.sampling.lattice import lattice_samples
+from isotorque.learning.sampling.optimal_design import d_optimal, least_variance
+from isotorque.learning.sampling.sampling_region import SamplingRegion
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 PAGE = Path(__file__).parents[1] / "docs" / "batch.md"
 NOISE = MeasurementNoise(float(np.deg2rad(0.5)), 0.02)

@@ -25,15 +25,15 @@ import numpy as np
 import pinocchio as pin
 
 from benchmarks.document import write_between
-from learning.export.c_export import c_source
-from learning.export.from_learner import torque_form
-from learning.learners.by_name import online_learner
-from learning.learners.network import FeedForwardNetwork
-from learning.learners.static_regressor import StaticRegressor
-from symbolic.gravity import GravityModel
-from symbolic.gravity_c import gravity_c
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.export.c_export import c_source
+from isotorque.learning.export.from_learner import torque_form
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.learning.learners.registry import online_learner
+from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
+from isotorque.symbolic.gravity.c_source import gravity_c
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 PAGE = Path(__file__).parents[1] / "docs" / "export.md"
 ROUNDS, CALLS = 15, 2000

@@ -9,11 +9,13 @@ import numpy as np
 from sklearn.kernel_ridge import KernelRidge
 from sklearn.neural_network import MLPRegressor
 
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.network import FeedForwardNetwork
-from learning.learners.static_regressor import StaticRegressor
-from learning.learners.trigonometric import EquivariantTrigonometric
-from learning.symmetry_use import SymmetricSamples
+from isotorque.learning.learners.augmented_samples import SymmetricSamples
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 
 #: Learners that are not run beyond so many samples: too slow for a few minutes.
 MOST_SAMPLES = {

@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 from benchmarks.clear_errors import clear_errors
 from benchmarks.document import write_between
 from benchmarks.urdf_arms import EXAMPLE_ROBOTS, example_robots
-from learning.learners.rigid.rigid_chain import RigidChain
-from learning.learners.static_regressor import StaticRegressor
-from symbolic.gravity import GravityModel
-from symbolic.robots import Robot, load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import Robot, load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from tests.learning.learners.rigid.random_chains import KINDS, random_chain, random_poses
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ import functools
 import sys
 from collections.abc import Callable
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 
 def clear_errors(main: Callable[[], int]) -> Callable[[], int]:

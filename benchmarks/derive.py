@@ -37,10 +37,10 @@ import sympy
 from benchmarks.clear_errors import clear_errors
 from benchmarks.time_limit import OutOfTimeError, at_most
 from benchmarks.urdf_arms import Subject, subjects
-from symbolic.gravity import GravityModel
-from symbolic.kinematic_tree import KinematicTree, human_arm, planar_arm
-from symbolic.potential import derive_potential
-from symbolic.symmetries import primary_symmetries
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.gravity.potential import derive_potential
+from isotorque.symbolic.robots.kinematic_tree import KinematicTree, human_arm, planar_arm
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 try:
     from adam.casadi import KinDynComputations

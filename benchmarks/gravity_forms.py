@@ -27,10 +27,14 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 import pinocchio as pin
 
-from symbolic.gravity import GravityModel
-from symbolic.gravity_c import gravity_c
-from symbolic.gravity_program import GravityProgram, expanded_program, recursion_program
-from symbolic.robots import builtin_robots, load_robot
+from isotorque.symbolic.gravity.c_source import gravity_c
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.gravity.straight_line_program import (
+    GravityProgram,
+    expanded_program,
+    recursion_program,
+)
+from isotorque.symbolic.robots.load_robot import builtin_robots, load_robot
 
 SINGLE, BATCH = 2000, 20_000
 

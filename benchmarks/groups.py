@@ -2,9 +2,10 @@
 
 Usage: python -m benchmarks.groups [--json] [--turns 5] [ROBOT ...]
 
-* isotorque: the complete group of a given potential, with proofs (symbolic.symmetries).
+* isotorque: the complete group of a given potential, with proofs (`isotorque.primary_symmetries`).
 * brute force: all integer matrices with entries in -2..2, from values of the torque alone
-  (verify.brute_force): no proof, and no robot with a joint that gravity does not feel.
+  (`isotorque.verify.testing.brute_force`): no proof, and no robot with a joint that gravity does
+  not feel.
 
 Both must find the same relations. Times are processor times; the ratio is the median over turns of
 the ratio within a turn.
@@ -25,12 +26,12 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 from benchmarks.clear_errors import clear_errors
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.potential import derive_potential
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
-from verify.brute_force import brute_force_symmetries
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.gravity.potential import derive_potential
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.testing.brute_force import brute_force_symmetries
 
 ROBOTS = ("pendulum", "2r", "3r")
 

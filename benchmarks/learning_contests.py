@@ -18,15 +18,15 @@ from benchmarks import learning_peers as peers
 from benchmarks.batch_learners import kernel_ridge, multilayer
 from benchmarks.literal_map import ArrayMap, LiteralMap
 from benchmarks.online.learners import joint, replayed, replayed_3r
-from learning.learners.by_name import LearningTask, learner_by_name
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.topological_map import TopologicalMap
-from learning.sampling.lattice import lattice_samples
-from learning.sampling.sampling_region import SamplingRegion
-from symbolic.domain import FundamentalDomain
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.topological_map import TopologicalMap
+from isotorque.learning.learners.registry import LearningTask, learner_by_name
+from isotorque.learning.sampling.lattice import lattice_samples
+from isotorque.learning.sampling.sampling_region import SamplingRegion
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 Array = np.ndarray
 Samples = tuple[Array, Array]

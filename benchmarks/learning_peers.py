@@ -16,8 +16,8 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import FunctionTransformer
 
 from benchmarks.batch_learners import circles
-from learning.symmetry_use import SymmetricSamples
-from symbolic.relations import SymmetryGroup
+from isotorque.learning.learners.augmented_samples import SymmetricSamples
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 
 Array = np.ndarray
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.symmetry_use import GroupArrays, SymmetryCoordinates
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 
 Array = np.ndarray
 

@@ -28,11 +28,12 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.relations.relation_learning import learn_relations
-from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryRelation, wrap
-from symbolic.robots import load_robot
-from symbolic.trigonometric import TrigonometricPolynomial
+from isotorque.learning.relations.learn_relations import learn_relations
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
+from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
+from isotorque.symbolic.robots.load_robot import load_robot
 
 Array = NDArray[np.float64]
 PAGE = Path(__file__).parents[1] / "docs" / "relations.md"

@@ -9,11 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.relations_samples import Samples, Truth, level_set_samples, stable_samples, truth
-from learning.relations.identification import identify
-from learning.relations.learned_symmetries import LearnedSymmetries
-from learning.relations.pairing import pair_relations
-from learning.relations.relation_learning import learn_relations
-from symbolic.relations import SymmetryGroup, SymmetryRelation, wrap
+from isotorque.learning.relations.identification.identify import identify
+from isotorque.learning.relations.learn_relations import learn_relations
+from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
+from isotorque.learning.relations.pairing.pair_relations import pair_relations
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 METHODS: dict[str, Callable[..., LearnedSymmetries]] = {
     "both methods": learn_relations,

@@ -25,12 +25,12 @@ from benchmarks.clear_errors import clear_errors
 from benchmarks.document import write_between
 from benchmarks.time_limit import OutOfTimeError, at_most
 from benchmarks.urdf_arms import example_robots
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.relations import group_structure
-from symbolic.robots import Robot, load_robot
-from symbolic.symmetries import primary_symmetries
-from symbolic.urdf import parse_urdf
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_group import group_structure
+from isotorque.symbolic.robots.load_robot import Robot, load_robot
+from isotorque.symbolic.robots.urdf import parse_urdf
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 PAGE = Path(__file__).parents[1] / "docs" / "robots.md"
 SECTION = "written by python -m benchmarks.robots --write"

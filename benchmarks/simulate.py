@@ -42,12 +42,12 @@ from benchmarks.simulation_peers import (
     near_starts,
     plain_settle,
 )
-from learning.arm import OutcomeKind
-from learning.recordings.recorded_simulation import RecordedSimulation
-from learning.recordings.recording import Recording
-from learning.recordings.run_info import RunInfo
-from learning.simulation.simulated_arm import SimulatedArm
-from symbolic.robots import load_robot
+from isotorque.learning.arm import OutcomeKind
+from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.recordings.recorded_simulation import RecordedSimulation
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.symbolic.robots.load_robot import load_robot
 
 try:
     import mujoco

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from learning.arm import OutcomeKind
-from learning.simulation.simulated_arm import SimulatedArm
+from isotorque.learning.arm import OutcomeKind
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
 
 try:
     import mujoco

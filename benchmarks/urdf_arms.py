@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from xml.etree.ElementTree import SubElement, tostring
 
 from defusedxml import ElementTree
 
-from symbolic.errors import InputError
-from symbolic.robots import Robot, builtin_robots, load_robot
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.robots.load_robot import Robot, builtin_robots, load_robot
 
 EXAMPLE_ROBOTS = {
     "z1": "z1_description/urdf/z1.urdf",
@@ -36,17 +37,17 @@ def subjects(names: list[str], folder: Path) -> list[Subject]:
     InputError
         For a name that no arm has here.
     """
-    built_in = Path(sys.modules["symbolic.robots"].__file__ or "").parent / "robot_files"
-    files = {arm.name: built_in / f"{arm.name}.urdf" for arm in builtin_robots()}
+    built_in = Path(str(files("isotorque.symbolic"))) / "robot_files"
+    places = {arm.name: built_in / f"{arm.name}.urdf" for arm in builtin_robots()}
     installed = example_robots()
     if installed is not None:
-        files |= {name: installed / path for name, path in EXAMPLE_ROBOTS.items()}
-    files = {name: path for name, path in files.items() if path.is_file()}
+        places |= {name: installed / path for name, path in EXAMPLE_ROBOTS.items()}
+    places = {name: path for name, path in places.items() if path.is_file()}
     for name in names:
-        if name not in files:
-            raise InputError("command line", "robots", name, ", ".join(files))
+        if name not in places:
+            raise InputError("command line", "robots", name, ", ".join(places))
     found = []
-    for name, path in files.items():
+    for name, path in places.items():
         if not names or name in names:
             explicit = folder / f"{name}.urdf"
             explicit.write_text(with_origins(path.read_text()))

@@ -20,14 +20,14 @@ import mpmath
 import numpy as np
 
 from benchmarks.document import write_between
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.kinematic_tree import KinematicTree
-from symbolic.relations import SymmetryRelation
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
-from verify.proof import OFFSET_ROUNDING
-from verify.relations import verify_relation
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
+from isotorque.symbolic.robots.kinematic_tree import KinematicTree
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.relations.exact_proof import OFFSET_ROUNDING
+from isotorque.verify.relations.verify_relation import verify_relation
 
 DIGITS = 80
 """Of the oracle's arithmetic; offsets of 10^15 turns take 16 of them, and 50 are needed."""

@@ -103,8 +103,9 @@ class HiddenImportsContract(Contract):
     Notes
     -----
     The import graph has an edge to the module that is named. A name that this module has itself
-    imported from elsewhere, ``from learning.simulation.body import Robot``, is traced here to the
-    module that defines it; so are attributes of modules. Dynamic imports have no edge at all:
+    imported from elsewhere, as in
+    ``from isotorque.learning.simulator.simulated_body import Robot``, is traced here to the module
+    that defines it; so are attributes of modules. Dynamic imports have no edge at all:
     importlib and its kin, ``__import__``, ``exec``, ``eval`` and ``sys.modules`` are refused, and
     so are the namespaces of other modules, which serve the same end.
     """

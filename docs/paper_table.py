@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from isotorque.paper.text import with_table
+from isotorque.paper.table.text import with_table
 
 PAGE = Path(__file__).parent / "paper.md"
 

@@ -7,10 +7,10 @@ import math
 
 import sympy
 
-from symbolic.gravity import GravityModel
-from symbolic.gravity_views import gravity_latex, gravity_sympy, gravity_text
-from symbolic.kinematic_tree import planar_arm
-from symbolic.symmetries import primary_symmetries
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.gravity.readable import gravity_latex, gravity_sympy, gravity_text
+from isotorque.symbolic.robots.kinematic_tree import planar_arm
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 # Masses m1, m2, lengths l1, l2, centres of mass c1, c2 and g are SymPy symbols.
 gravity = GravityModel(planar_arm(2))

@@ -8,11 +8,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from symbolic.gravity import GravityModel
-from symbolic.gravity_c import gravity_c
-from symbolic.gravity_views import gravity_text
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.symbolic.gravity.c_source import gravity_c
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.gravity.readable import gravity_text
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 WRIST = """<?xml version="1.0"?>
 <robot name="wrist">

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from learning.export.c_export import c_source
-from learning.export.casadi_export import casadi_function
-from learning.export.from_learner import torque_form
-from learning.learners.network import FeedForwardNetwork
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.export.c_export import c_source
+from isotorque.learning.export.casadi_export import casadi_function
+from isotorque.learning.export.from_learner import torque_form
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 robot = load_robot("2r")
 gravity = GravityModel(robot)

@@ -1,7 +1,7 @@
 """How your own hardware stands in for the simulator, and how its samples are recorded.
 
 Everything in `learning` sees an arm through three things: ``q``, ``apply(torque) -> Outcome`` and
-``go_home()`` (`learning.arm.Arm`). Write a class with these three for your arm and hand it to
+``go_home()`` (`Arm`). Write a class with these three for your arm and hand it to
 whatever takes an arm. ``TorqueDrivenArm`` below is such a class; what it needs of your motor
 electronics is a ``Drive``. So that this file runs without an arm, ``BenchPendulum`` plays the
 drive of a single hanging rod.
@@ -21,11 +21,11 @@ from typing import Protocol
 
 import numpy as np
 
-from learning.arm import LimitHit, Outcome, Settled, TimedOut, Vector
-from learning.recordings.csv_data import write_csv
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recording import Recording
-from learning.recordings.run_info import RunInfo
+from isotorque.learning.arm import LimitHit, Outcome, Settled, TimedOut, Vector
+from isotorque.learning.files.csv_samples import write_csv
+from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recording import Recording
 
 
 class Drive(Protocol):
@@ -45,7 +45,7 @@ class Drive(Protocol):
 
 
 class TorqueDrivenArm:
-    """An arm that is moved by constant torques alone (`learning.arm.Arm`).
+    """An arm that is moved by constant torques alone (`Arm`).
 
     Parameters
     ----------

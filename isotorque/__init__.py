@@ -17,124 +17,148 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from learning.arm import Arm as Arm
-    from learning.arm import LimitHit as LimitHit
-    from learning.arm import Outcome as Outcome
-    from learning.arm import OutcomeKind as OutcomeKind
-    from learning.arm import ProfileArm as ProfileArm
-    from learning.arm import Settled as Settled
-    from learning.arm import TimedOut as TimedOut
-    from learning.discovery import discover as discover
-    from learning.export.c_export import c_source as c_source
-    from learning.export.casadi_export import casadi_function as casadi_function
-    from learning.export.from_learner import torque_form as torque_form
-    from learning.held_out import held_out as held_out
-    from learning.learners.gaussian_process import (
+    from isotorque.learning.arm import Arm as Arm
+    from isotorque.learning.arm import LimitHit as LimitHit
+    from isotorque.learning.arm import Outcome as Outcome
+    from isotorque.learning.arm import OutcomeKind as OutcomeKind
+    from isotorque.learning.arm import ProfileArm as ProfileArm
+    from isotorque.learning.arm import Settled as Settled
+    from isotorque.learning.arm import TimedOut as TimedOut
+    from isotorque.learning.discovery.torque_profile_discovery import discover as discover
+    from isotorque.learning.export.c_export import c_source as c_source
+    from isotorque.learning.export.casadi_export import casadi_function as casadi_function
+    from isotorque.learning.export.from_learner import torque_form as torque_form
+    from isotorque.learning.files.csv_samples import StaticSamples as StaticSamples
+    from isotorque.learning.files.csv_samples import read_csv as read_csv
+    from isotorque.learning.files.saved_models import SavedModel as SavedModel
+    from isotorque.learning.files.saved_models import load_model as load_model
+    from isotorque.learning.files.saved_models import save_model as save_model
+    from isotorque.learning.learners.cross_validation import held_out as held_out
+    from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
         SymmetricGaussianProcess as SymmetricGaussianProcess,
     )
-    from learning.learners.local_linear_map import LocalLinearMap as LocalLinearMap
-    from learning.learners.network import FeedForwardNetwork as FeedForwardNetwork
-    from learning.learners.recursive_least_squares import (
+    from isotorque.learning.learners.local_linear.local_linear_map import (
+        LocalLinearMap as LocalLinearMap,
+    )
+    from isotorque.learning.learners.local_linear.recursive_least_squares import (
         RecursiveLeastSquares as RecursiveLeastSquares,
     )
-    from learning.learners.rigid.rigid_chain import RigidChain as RigidChain
-    from learning.learners.static_regressor import StaticRegressor as StaticRegressor
-    from learning.learners.trigonometric import EquivariantTrigonometric as EquivariantTrigonometric
-    from learning.model_files import SavedModel as SavedModel
-    from learning.model_files import load_model as load_model
-    from learning.model_files import save_model as save_model
-    from learning.recordings.csv_data import StaticSamples as StaticSamples
-    from learning.recordings.csv_data import read_csv as read_csv
-    from learning.recordings.recording import Recording as Recording
-    from learning.relations.broken_symmetries import SupportedGroup as SupportedGroup
-    from learning.relations.broken_symmetries import supported_group as supported_group
-    from learning.relations.candidate_maps import judge_candidates as judge_candidates
-    from learning.relations.identification import identify as identify
-    from learning.relations.relation_learning import learn_relations as learn_relations
-    from learning.sampling.lattice import lattice_samples as lattice_samples
-    from learning.sampling.optimal_design import Design as Design
-    from learning.sampling.optimal_design import d_optimal as d_optimal
-    from learning.sampling.optimal_design import least_variance as least_variance
-    from learning.sampling.sampling_region import SamplingRegion as SamplingRegion
-    from learning.scheme import Scheme as Scheme
-    from learning.simulation.simulated_arm import SimulatedArm as SimulatedArm
-    from learning.static_torques.static_torque_set import StaticTorqueSet as StaticTorqueSet
-    from symbolic.approximate_symmetries import maximal_groups as maximal_groups
-    from symbolic.domain import FundamentalDomain as FundamentalDomain
-    from symbolic.errors import InputError as InputError
-    from symbolic.gravity import GravityModel as GravityModel
-    from symbolic.kinematic_tree import KinematicTree as KinematicTree
-    from symbolic.kinematic_tree import planar_arm as planar_arm
-    from symbolic.relations import SymmetryGroup as SymmetryGroup
-    from symbolic.relations import SymmetryRelation as SymmetryRelation
-    from symbolic.robots import Robot as Robot
-    from symbolic.robots import load_robot as load_robot
-    from symbolic.symmetries import primary_symmetries as primary_symmetries
-    from symbolic.trigonometric import TrigonometricPolynomial as TrigonometricPolynomial
-    from verify.models import verify_model as verify_model
-    from verify.relation_files import load_relations as load_relations
-    from verify.relations import verify_relation as verify_relation
-    from verify.static_torques import judge_static_torques as judge_static_torques
-    from verify.verdict import Verdict as Verdict
+    from isotorque.learning.learners.network.feed_forward_network import (
+        FeedForwardNetwork as FeedForwardNetwork,
+    )
+    from isotorque.learning.learners.rigid.equivariant_trigonometric import (
+        EquivariantTrigonometric as EquivariantTrigonometric,
+    )
+    from isotorque.learning.learners.rigid.rigid_chain import RigidChain as RigidChain
+    from isotorque.learning.learners.rigid.static_regressor import (
+        StaticRegressor as StaticRegressor,
+    )
+    from isotorque.learning.recordings.recording import Recording as Recording
+    from isotorque.learning.relations.identification.identify import identify as identify
+    from isotorque.learning.relations.learn_relations import learn_relations as learn_relations
+    from isotorque.learning.relations.testing.judge_candidates import (
+        judge_candidates as judge_candidates,
+    )
+    from isotorque.learning.relations.testing.supported_group import (
+        SupportedGroup as SupportedGroup,
+    )
+    from isotorque.learning.relations.testing.supported_group import (
+        supported_group as supported_group,
+    )
+    from isotorque.learning.sampling.lattice import lattice_samples as lattice_samples
+    from isotorque.learning.sampling.optimal_design import Design as Design
+    from isotorque.learning.sampling.optimal_design import d_optimal as d_optimal
+    from isotorque.learning.sampling.optimal_design import least_variance as least_variance
+    from isotorque.learning.sampling.sampling_region import SamplingRegion as SamplingRegion
+    from isotorque.learning.scheme import Scheme as Scheme
+    from isotorque.learning.simulator.simulated_arm import SimulatedArm as SimulatedArm
+    from isotorque.learning.static_torques.static_torque_set import (
+        StaticTorqueSet as StaticTorqueSet,
+    )
+    from isotorque.symbolic.common.errors import InputError as InputError
+    from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain as FundamentalDomain
+    from isotorque.symbolic.gravity.gravity_model import GravityModel as GravityModel
+    from isotorque.symbolic.groups.symmetry_group import SymmetryGroup as SymmetryGroup
+    from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation as SymmetryRelation
+    from isotorque.symbolic.polynomials.trigonometric_polynomial import (
+        TrigonometricPolynomial as TrigonometricPolynomial,
+    )
+    from isotorque.symbolic.robots.kinematic_tree import KinematicTree as KinematicTree
+    from isotorque.symbolic.robots.kinematic_tree import planar_arm as planar_arm
+    from isotorque.symbolic.robots.load_robot import Robot as Robot
+    from isotorque.symbolic.robots.load_robot import load_robot as load_robot
+    from isotorque.symbolic.symmetries.approximate_symmetries import (
+        maximal_groups as maximal_groups,
+    )
+    from isotorque.symbolic.symmetries.primary_symmetries import (
+        primary_symmetries as primary_symmetries,
+    )
+    from isotorque.verify.models.verify_model import verify_model as verify_model
+    from isotorque.verify.relations.relation_files import load_relations as load_relations
+    from isotorque.verify.relations.verify_relation import verify_relation as verify_relation
+    from isotorque.verify.static_torques.judge_static_torques import (
+        judge_static_torques as judge_static_torques,
+    )
+    from isotorque.verify.verdict import Verdict as Verdict
 
 __version__ = "0.1.0"
 
 _HOME = {
     "Arm": "learning.arm",
     "Design": "learning.sampling.optimal_design",
-    "EquivariantTrigonometric": "learning.learners.trigonometric",
-    "FeedForwardNetwork": "learning.learners.network",
-    "FundamentalDomain": "symbolic.domain",
-    "GravityModel": "symbolic.gravity",
-    "InputError": "symbolic.errors",
-    "KinematicTree": "symbolic.kinematic_tree",
+    "EquivariantTrigonometric": "learning.learners.rigid.equivariant_trigonometric",
+    "FeedForwardNetwork": "learning.learners.network.feed_forward_network",
+    "FundamentalDomain": "symbolic.domains.fundamental_domain",
+    "GravityModel": "symbolic.gravity.gravity_model",
+    "InputError": "symbolic.common.errors",
+    "KinematicTree": "symbolic.robots.kinematic_tree",
     "LimitHit": "learning.arm",
-    "LocalLinearMap": "learning.learners.local_linear_map",
+    "LocalLinearMap": "learning.learners.local_linear.local_linear_map",
     "Outcome": "learning.arm",
     "OutcomeKind": "learning.arm",
     "ProfileArm": "learning.arm",
     "Recording": "learning.recordings.recording",
-    "RecursiveLeastSquares": "learning.learners.recursive_least_squares",
+    "RecursiveLeastSquares": "learning.learners.local_linear.recursive_least_squares",
     "RigidChain": "learning.learners.rigid.rigid_chain",
-    "Robot": "symbolic.robots",
+    "Robot": "symbolic.robots.load_robot",
     "SamplingRegion": "learning.sampling.sampling_region",
-    "SavedModel": "learning.model_files",
+    "SavedModel": "learning.files.saved_models",
     "Scheme": "learning.scheme",
     "Settled": "learning.arm",
-    "SimulatedArm": "learning.simulation.simulated_arm",
-    "StaticRegressor": "learning.learners.static_regressor",
-    "StaticSamples": "learning.recordings.csv_data",
+    "SimulatedArm": "learning.simulator.simulated_arm",
+    "StaticRegressor": "learning.learners.rigid.static_regressor",
+    "StaticSamples": "learning.files.csv_samples",
     "StaticTorqueSet": "learning.static_torques.static_torque_set",
-    "SupportedGroup": "learning.relations.broken_symmetries",
-    "SymmetricGaussianProcess": "learning.learners.gaussian_process",
-    "SymmetryGroup": "symbolic.relations",
-    "SymmetryRelation": "symbolic.relations",
+    "SupportedGroup": "learning.relations.testing.supported_group",
+    "SymmetricGaussianProcess": "learning.learners.gaussian_process.symmetric_gaussian_process",
+    "SymmetryGroup": "symbolic.groups.symmetry_group",
+    "SymmetryRelation": "symbolic.groups.symmetry_relation",
     "TimedOut": "learning.arm",
-    "TrigonometricPolynomial": "symbolic.trigonometric",
+    "TrigonometricPolynomial": "symbolic.polynomials.trigonometric_polynomial",
     "Verdict": "verify.verdict",
     "c_source": "learning.export.c_export",
     "casadi_function": "learning.export.casadi_export",
     "d_optimal": "learning.sampling.optimal_design",
-    "discover": "learning.discovery",
-    "held_out": "learning.held_out",
-    "identify": "learning.relations.identification",
-    "judge_candidates": "learning.relations.candidate_maps",
-    "judge_static_torques": "verify.static_torques",
+    "discover": "learning.discovery.torque_profile_discovery",
+    "held_out": "learning.learners.cross_validation",
+    "identify": "learning.relations.identification.identify",
+    "judge_candidates": "learning.relations.testing.judge_candidates",
+    "judge_static_torques": "verify.static_torques.judge_static_torques",
     "lattice_samples": "learning.sampling.lattice",
-    "learn_relations": "learning.relations.relation_learning",
+    "learn_relations": "learning.relations.learn_relations",
     "least_variance": "learning.sampling.optimal_design",
-    "load_model": "learning.model_files",
-    "load_relations": "verify.relation_files",
-    "load_robot": "symbolic.robots",
-    "maximal_groups": "symbolic.approximate_symmetries",
-    "planar_arm": "symbolic.kinematic_tree",
-    "primary_symmetries": "symbolic.symmetries",
-    "read_csv": "learning.recordings.csv_data",
-    "save_model": "learning.model_files",
-    "supported_group": "learning.relations.broken_symmetries",
+    "load_model": "learning.files.saved_models",
+    "load_relations": "verify.relations.relation_files",
+    "load_robot": "symbolic.robots.load_robot",
+    "maximal_groups": "symbolic.symmetries.approximate_symmetries",
+    "planar_arm": "symbolic.robots.kinematic_tree",
+    "primary_symmetries": "symbolic.symmetries.primary_symmetries",
+    "read_csv": "learning.files.csv_samples",
+    "save_model": "learning.files.saved_models",
+    "supported_group": "learning.relations.testing.supported_group",
     "torque_form": "learning.export.from_learner",
-    "verify_model": "verify.models",
-    "verify_relation": "verify.relations",
+    "verify_model": "verify.models.verify_model",
+    "verify_relation": "verify.relations.verify_relation",
 }
 
 __all__ = sorted(_HOME)
@@ -143,7 +167,7 @@ __all__ = sorted(_HOME)
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module 'isotorque' has no attribute '{name}'")
-    value = getattr(importlib.import_module(_HOME[name]), name)
+    value = getattr(importlib.import_module(f"isotorque.{_HOME[name]}"), name)
     globals()[name] = value
     return value
 

@@ -12,7 +12,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")

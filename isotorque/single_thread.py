@@ -1,3 +1,3 @@
 """Linear algebra in one thread: results do not depend on the number of processors."""
 
-from symbolic.single_thread import single_thread as single_thread
+from isotorque.symbolic.common.single_thread import single_thread as single_thread

@@ -122,3 +122,15 @@ class ProfileArm(Arm, Protocol):
     def play(self, torques: Vector, step_seconds: float) -> Playback:
         """Apply ``torques`` (T, n) [N m] one after the other, then wait under the last one."""
         ...
+
+
+class GuidedArm(Arm, Protocol):
+    """An arm that can be placed and held from outside (``SimulatedArm`` in guided physics)."""
+
+    def place(self, q: Vector) -> None:
+        """Place the arm at rest at q (n,) [rad]."""
+        ...
+
+    def hold(self) -> Outcome:
+        """Measure the torque that holds the arm where it is."""
+        ...

@@ -9,23 +9,32 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
-from learning.discovery import DiscoverySettings, babble, choose_target, discover, lead
-from learning.exploration.by_name import DIRECTIONS, check_exploration, exploration_by_name
-from learning.exploration.cell_choice import central_domain
-from learning.exploration.explored_share import ExploredShare
-from learning.exploration.loop import Exploration, Learner
-from learning.exploration.settings import ExplorationSettings
-from learning.exploration.step import ExplorationStep
-from learning.home_torque import Search, find_home_torque, measure_home_torque
-from learning.relations.active_confirmation import next_torque
-from learning.relations.learned_symmetries import LearnedSymmetries
-from learning.relations.relation_learning import learn_relations
-from learning.static_torques.static_torque_set import StaticTorqueSet
-from learning.static_torques.visited_torques import visited_torques
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
-from symbolic.relations import SymmetryGroup
+from isotorque.learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
+from isotorque.learning.discovery.home_torque import Search, find_home_torque, measure_home_torque
+from isotorque.learning.discovery.motor_babbling import babble
+from isotorque.learning.discovery.torque_profile_discovery import (
+    DiscoverySettings,
+    choose_target,
+    discover,
+    lead,
+)
+from isotorque.learning.exploration.central_domain import central_domain
+from isotorque.learning.exploration.exploration import Exploration, ExplorationStep, Learner
+from isotorque.learning.exploration.explored_share import ExploredShare
+from isotorque.learning.exploration.registry import (
+    DIRECTIONS,
+    check_exploration,
+    exploration_by_name,
+)
+from isotorque.learning.exploration.settings import ExplorationSettings
+from isotorque.learning.relations.learn_relations import learn_relations
+from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
+from isotorque.learning.relations.next_sample import next_torque
+from isotorque.learning.static_torques.static_torque_set import StaticTorqueSet
+from isotorque.learning.static_torques.visited_torques import visited_torques
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 
 Array = NDArray[np.float64]
 SHARE_POINTS = 1000

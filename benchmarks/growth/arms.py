@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from symbolic.robots import Robot, load_robot
+from isotorque.symbolic.robots.load_robot import Robot, load_robot
 
 LENGTH, MASS = 0.25, 2.0
 """Of each link [m], [kg]; each is a uniform rod."""

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from benchmarks.growth.arms import planar_chain, random_arm
 from benchmarks.growth.curves import Curve, Work
-from learning.arm import OutcomeKind
-from learning.simulation.simulated_arm import SimulatedArm
-from symbolic.gravity import GravityModel
-from symbolic.gravity_recursion import GravityChain
-from symbolic.potential import derive_potential
-from symbolic.robots import Robot
-from symbolic.symmetries import primary_symmetries
-from symbolic.trigonometric import TrigonometricPolynomial
+from isotorque.learning.arm import OutcomeKind
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.gravity.potential import derive_potential
+from isotorque.symbolic.gravity.recursion import GravityChain
+from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
+from isotorque.symbolic.robots.load_robot import Robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 JOINTS = tuple(range(2, 11))
 PANELS = ("random arms", "planar chains")

@@ -9,16 +9,19 @@ import numpy as np
 
 from benchmarks.growth.curves import Curve, Work
 from benchmarks.growth.samples import FEW_STEPS
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.network import FeedForwardNetwork
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
-from learning.learners.trigonometric import EquivariantTrigonometric
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryGroup, close, identity
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup, close
+from isotorque.symbolic.groups.symmetry_relation import identity
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 ROBOT = "4r-planar"
 ORDERS = (1, 2, 4, 8, 16, 32)

@@ -12,8 +12,19 @@ from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter, NullLocat
 
 from benchmarks.growth.curves import Measured, growth
 from benchmarks.growth.table import law
-from verify.figures.style import BLUE, FAINT, GREEN, INK, ORANGE, PINK, RED, SKY, panels, settings
-from verify.figures.style import to_svg as as_svg
+from isotorque.verify.report.figures.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    ORANGE,
+    PINK,
+    RED,
+    SKY,
+    panels,
+    settings,
+)
+from isotorque.verify.report.figures.style import to_svg as as_svg
 
 COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, INK, SKY)
 MARKERS = "osD^vP*"

@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 
 from benchmarks.growth.curves import Curve, Work
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
 
 PANELS = ("LocalLinearMap", "RecursiveLeastSquares")
 MAP = (10, 18, 32, 56, 100, 178, 316)

@@ -9,17 +9,20 @@ from typing import Any
 import numpy as np
 
 from benchmarks.growth.curves import Curve, Work
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.network import FeedForwardNetwork
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
-from learning.learners.static_regressor import StaticRegressor
-from learning.learners.trigonometric import EquivariantTrigonometric
-from learning.relations.relation_learning import learn_relations
-from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryGroup, wrap
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
+from isotorque.learning.relations.learn_relations import learn_relations
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 ROBOT = "2r"
 PANELS = ("learning all samples", "answering all queries")

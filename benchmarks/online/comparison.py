@@ -13,18 +13,18 @@ from benchmarks.online.learners import QUICK, joint, replayed
 from benchmarks.online.runs import Plan, Run, all_seeds, explored, scheme_run
 from benchmarks.online.table import Row, spread
 from benchmarks.online.truth import Truth
-from learning.exploration.loop import Exploration
-from learning.exploration.settings import ExplorationSettings
-from learning.exploration.strategies import (
+from isotorque.learning.exploration.exploration import Exploration
+from isotorque.learning.exploration.settings import ExplorationSettings
+from isotorque.learning.exploration.strategies import (
     ConstrainedGoalBabbling,
     DirectionSampling,
     GoalBabbling,
     MotorBabbling,
 )
-from learning.exploration.targets import JointBox
-from learning.scheme import Scheme, SchemeSettings
-from learning.simulation.simulated_arm import SimulatedArm
-from symbolic.domain import FundamentalDomain
+from isotorque.learning.exploration.targets import JointBox
+from isotorque.learning.scheme import Scheme, SchemeSettings
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 
 COMMANDS = 1000
 PLAN = Plan(COMMANDS, COMMANDS, ("dense",))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from learning.exploration.settings import ExplorationSettings
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
+from isotorque.learning.exploration.settings import ExplorationSettings
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
 
 LITERAL = ExplorationSettings(noise=0.01, step_width=0.15)
 QUICK = ExplorationSettings(noise=0.01, step_width=0.3)

@@ -13,7 +13,7 @@ from benchmarks.online.learners import QUICK, joint_for_noise
 from benchmarks.online.runs import Plan, Run, scheme_run
 from benchmarks.online.table import Row, spread
 from benchmarks.online.truth import Truth
-from learning.physics import MeasurementNoise
+from isotorque.learning.simulator.settings import MeasurementNoise
 
 NOISE = MeasurementNoise(angle=np.deg2rad(0.1), torque=0.01)
 SAMPLES = (60, 120, 250, 500, 1000, 2000)

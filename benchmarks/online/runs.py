@@ -10,14 +10,13 @@ import numpy as np
 
 from benchmarks.online.store import Store
 from benchmarks.online.truth import Truth
-from learning.exploration.loop import Exploration
-from learning.exploration.settings import ExplorationSettings
-from learning.exploration.step import Counts
-from learning.exploration.strategies import GuidedDirectionSampling
-from learning.physics import MeasurementNoise
-from learning.scheme import Scheme, SchemeSettings
-from learning.simulation.simulated_arm import SimulatedArm
-from symbolic.domain import FundamentalDomain
+from isotorque.learning.exploration.exploration import Counts, Exploration
+from isotorque.learning.exploration.settings import ExplorationSettings
+from isotorque.learning.exploration.strategies import GuidedDirectionSampling
+from isotorque.learning.scheme import Scheme, SchemeSettings
+from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 
 MakeLearner = Callable[[Any, Any], Any]
 

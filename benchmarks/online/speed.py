@@ -12,7 +12,7 @@ import numpy as np
 from benchmarks.online.learners import joint
 from benchmarks.online.table import Row
 from benchmarks.online.truth import Truth
-from learning.learners.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
 
 
 def speed_rows(options: argparse.Namespace) -> Iterator[Row]:

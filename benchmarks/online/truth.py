@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryGroup
-from symbolic.robots import Robot, load_robot
-from symbolic.symmetries import primary_symmetries
-from verify.paper_targets import paper_targets
-from verify.targets import dense_targets
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.robots.load_robot import Robot, load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.models.paper_targets import paper_targets
+from isotorque.verify.models.target_sets import dense_targets
 
 STABLE = 0.01
 """Least eigenvalue of the stiffness, as a share of the largest, of what counts as stable."""

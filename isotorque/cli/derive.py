@@ -31,11 +31,11 @@ def derive(
     quiet: Quiet = False,
 ) -> None:
     """Derive the gravity torque, checked against Pinocchio every time."""
-    from isotorque.files import write_whole
-    from symbolic.gravity import GravityModel
-    from symbolic.gravity_c import gravity_c
-    from symbolic.gravity_casadi import gravity_casadi
-    from symbolic.gravity_views import gravity_latex, gravity_sympy, gravity_text
+    from isotorque.symbolic.common.files import write_whole
+    from isotorque.symbolic.gravity.c_source import gravity_c
+    from isotorque.symbolic.gravity.casadi_function import gravity_casadi
+    from isotorque.symbolic.gravity.gravity_model import GravityModel
+    from isotorque.symbolic.gravity.readable import gravity_latex, gravity_sympy, gravity_text
 
     loaded = load(robot, quiet)
     start = time.perf_counter()

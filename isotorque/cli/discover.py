@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from isotorque.cli.options import (
     AngleNoise,
+    Confirm,
     EncoderStep,
     Engine,
     Json,
+    NMin,
     Out,
     Physics,
     Quiet,
@@ -16,7 +18,6 @@ from isotorque.cli.options import (
 )
 from isotorque.cli.output import emit_json, row
 from isotorque.cli.robot_options import RobotName, about, load, takes_robot
-from isotorque.cli.run_options import Confirm, NMin
 
 
 @takes_robot()
@@ -40,10 +41,10 @@ def discover(
     The same command resumes what was stopped; `relations` and `learn` go on from OUT.
     """
     from isotorque.cli.progress import progress_bars
-    from isotorque.files import output_directory
+    from isotorque.learning.arm import OutcomeKind
     from isotorque.runs.experiment import discover_symmetries
-    from isotorque.runs.run_options import ArmOptions, RunOptions
-    from learning.arm import OutcomeKind
+    from isotorque.runs.options.run_options import ArmOptions, RunOptions
+    from isotorque.symbolic.common.files import output_directory
 
     arm = ArmOptions(seed, physics, engine, settle, angle_noise, torque_noise, encoder_step)
     options = RunOptions(robot, arm, n_min, confirm=confirm)

@@ -27,9 +27,9 @@ def domain(
     quiet: Quiet = False,
 ) -> None:
     """Describe a fundamental domain: exactly one configuration of each symmetric set."""
-    from symbolic.domain import FundamentalDomain
-    from symbolic.gravity import GravityModel
-    from symbolic.symmetries import primary_symmetries
+    from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+    from isotorque.symbolic.gravity.gravity_model import GravityModel
+    from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
     loaded = load(robot, quiet)
     at = None if center is None else numbers(center, "--center", loaded.n)

@@ -11,10 +11,10 @@ import typer
 from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json, say
 from isotorque.cli.robot_options import about, load, named, takes_robot
-from symbolic.robot_options import RobotOptions
+from isotorque.symbolic.common.robot_options import RobotOptions
 
 if TYPE_CHECKING:
-    from learning.export.torque_form import TorqueForm
+    from isotorque.learning.export.torque_form import TorqueForm
 
 
 @takes_robot("model")
@@ -50,8 +50,8 @@ def export(
     quiet: Quiet = False,
 ) -> None:
     """Write a torque map as C source, as a CasADi function, as arrays; checked each time."""
-    from isotorque.files import write_whole
-    from symbolic.errors import InputError
+    from isotorque.symbolic.common.errors import InputError
+    from isotorque.symbolic.common.files import write_whole
 
     if c is casadi is npz is None:
         raise InputError("command line", "output", "none", "--c, --casadi or --npz with a file")
@@ -78,7 +78,7 @@ def export(
         write_whole(casadi, exported.casadi_function().serialize())
         written["casadi"] = casadi
     if npz is not None and described is not None:
-        from learning.export.array_files import export_bytes
+        from isotorque.learning.export.array_files import export_bytes
 
         arrays, document = export_bytes(
             exported.form, exported.robot, exported.digest, exported.joints
@@ -118,27 +118,27 @@ class _Export:
 
     def c_source(self) -> str:
         if self.gravity is not None:
-            from symbolic.gravity_c import gravity_c
+            from isotorque.symbolic.gravity.c_source import gravity_c
 
             return gravity_c(self.gravity)
-        from learning.export.c_export import c_source
+        from isotorque.learning.export.c_export import c_source
 
         return c_source(self.form, self.comment, self.joints)
 
     def casadi_function(self) -> Any:
         if self.gravity is not None:
-            from symbolic.gravity_casadi import gravity_casadi
+            from isotorque.symbolic.gravity.casadi_function import gravity_casadi
 
             return gravity_casadi(self.gravity)
-        from learning.export.casadi_export import casadi_function
+        from isotorque.learning.export.casadi_export import casadi_function
 
         return casadi_function(self.form)
 
 
 def _learned(path: Path) -> _Export:
-    from learning.export.from_learner import torque_form
-    from learning.export.torque_form import largest_difference
-    from learning.model_files import load_model
+    from isotorque.learning.export.from_learner import torque_form
+    from isotorque.learning.export.torque_form import largest_difference
+    from isotorque.learning.files.saved_models import load_model
 
     saved = load_model(path)
     form = torque_form(saved.learner)
@@ -158,9 +158,9 @@ def _learned(path: Path) -> _Export:
 
 
 def _analytic(options: RobotOptions, quiet: bool) -> _Export:
-    from learning.export.torque_form import largest_difference
-    from learning.export.waves import Waves
-    from symbolic.gravity import GravityModel
+    from isotorque.learning.export.torque_form import largest_difference
+    from isotorque.learning.export.waves import Waves
+    from isotorque.symbolic.gravity.gravity_model import GravityModel
 
     robot = load(options, quiet)
     gravity = GravityModel(robot)
@@ -172,8 +172,8 @@ def _analytic(options: RobotOptions, quiet: bool) -> _Export:
 
 def _keep_others(path: Path) -> None:
     """Refuse to replace a JSON file that is no export, such as the model itself."""
-    from learning.export.array_files import FORMAT
-    from symbolic.errors import InputError
+    from isotorque.learning.export.array_files import FORMAT
+    from isotorque.symbolic.common.errors import InputError
 
     if path.exists() and FORMAT not in path.read_text(encoding="utf-8", errors="replace")[:200]:
         raise InputError(path, "file", "there already, and no export", "another name for --npz")

@@ -12,24 +12,22 @@ from isotorque.cli.options import (
     EncoderStep,
     Engine,
     Json,
+    LearnAnyway,
+    LearnerName,
+    NMin,
     Out,
     Physics,
     Quiet,
+    Samples,
     Seed,
     Settle,
+    Strategy,
+    Symmetries,
     TorqueNoise,
 )
 from isotorque.cli.output import emit_json, row, say
 from isotorque.cli.robot_options import load, named, takes_robot
-from isotorque.cli.run_options import (
-    LearnAnyway,
-    LearnerName,
-    NMin,
-    Samples,
-    Strategy,
-    Symmetries,
-)
-from symbolic.robot_options import RobotOptions
+from isotorque.symbolic.common.robot_options import RobotOptions
 
 SIMULATED = (
     "n_min",
@@ -97,14 +95,14 @@ def learn(
     where none is accepted.
     """
     from isotorque.cli.progress import progress_bars
-    from isotorque.files import output_directory
-    from isotorque.runs.data_learning import DataOptions, learn_from_data
     from isotorque.runs.experiment import run_experiment
+    from isotorque.runs.from_data.data_learning import DataOptions, learn_from_data
     from isotorque.runs.lattice_learning import learn_from_lattice
-    from isotorque.runs.learn_options import learn_options
     from isotorque.runs.learned_model import model_of_run
-    from isotorque.runs.recorded_robot import as_recorded
-    from isotorque.runs.run_options import LATTICE
+    from isotorque.runs.options.learn_options import learn_options
+    from isotorque.runs.options.recorded_robot import as_recorded
+    from isotorque.runs.options.run_options import LATTICE
+    from isotorque.symbolic.common.files import output_directory
 
     given = _given(context)
     if robot is None:
@@ -135,8 +133,8 @@ def learn(
 
 
 def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quiet: bool) -> int:
-    from isotorque.runs.chain_from_data import ChainDataOptions, chain_from_data
-    from symbolic.errors import InputError
+    from isotorque.runs.from_data.chain_from_data import ChainDataOptions, chain_from_data
+    from isotorque.symbolic.common.errors import InputError
 
     if given.get("data") is None:
         accepted = "the name or file of a robot, or --data FILE.csv"
@@ -185,7 +183,7 @@ def _given(context: typer.Context) -> dict[str, Any]:
 
 
 def _refuse(given: dict[str, Any], names: tuple[str, ...], beside: str) -> None:
-    from symbolic.errors import InputError
+    from isotorque.symbolic.common.errors import InputError
 
     for name in names:
         if name in given:

@@ -25,7 +25,7 @@ from isotorque.cli import (
 from isotorque.cli import run as run_command
 from isotorque.cli.help_text import LiteralHelp
 from isotorque.cli.streams import patient_streams
-from symbolic.errors import InputError, visible
+from isotorque.symbolic.common.errors import InputError, visible
 
 # typer may bring click along under a private name: take the class from typer's public one
 _ClickException: type[Exception] = typer.BadParameter.__mro__[2]

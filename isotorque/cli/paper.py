@@ -6,9 +6,8 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, Out, Quiet, Seed
+from isotorque.cli.options import Jobs, Json, Out, Quiet, Scheduler, Seed, Seeds
 from isotorque.cli.output import emit_json, say
-from isotorque.cli.workers import Jobs, Scheduler, Seeds
 
 Part = Annotated[
     str,

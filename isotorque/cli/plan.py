@@ -10,7 +10,7 @@ import typer
 from isotorque.cli.options import Json, Quiet, Seed
 from isotorque.cli.output import emit_json, say
 from isotorque.cli.robot_options import load, named, takes_robot
-from symbolic.robot_options import RobotOptions
+from isotorque.symbolic.common.robot_options import RobotOptions
 
 
 @takes_robot("what")
@@ -53,9 +53,9 @@ def plan(
     The region is the range of recorded angles, or a robot's joint limits; poses that need more
     than a robot's effort limits are left out.
     """
-    from isotorque.runs.chain_plan import plan_for_model, plan_for_robot, read_poses
-    from learning.model_files import load_model
-    from symbolic.errors import InputError
+    from isotorque.learning.files.saved_models import load_model
+    from isotorque.runs.from_data.chain_plan import plan_for_model, plan_for_robot, read_poses
+    from isotorque.symbolic.common.errors import InputError
 
     saved = Path(what.spec)
     if saved.is_dir() or saved.suffix == ".json":

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from isotorque.cli.options import Json, Quiet
-from isotorque.cli.output import emit_json, plain, row, say
+from isotorque.cli.output import emit_json, row, say
 from isotorque.cli.robot_options import named, takes_robot
-from symbolic.robot_options import RobotOptions
+from isotorque.plain import plain
+from isotorque.symbolic.common.robot_options import RobotOptions
 
 if TYPE_CHECKING:
-    from learning.relations.candidate_maps import JudgedCandidate
-    from learning.relations.errors_in_variables import MeasurementNoise
-    from learning.relations.learned_symmetries import LearnedSymmetries
+    from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
+    from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+    from isotorque.learning.relations.testing.judge_candidates import JudgedCandidate
 
 PHASE = "discovery"
 
@@ -66,19 +67,19 @@ def relations(
     """
     import json as text
 
-    from isotorque.files import write_whole
+    from isotorque.learning.recordings.recording_reader import RecordingReader
+    from isotorque.learning.relations.chain_identification import with_chain
+    from isotorque.learning.relations.learn_relations import learn_relations
+    from isotorque.learning.relations.testing.judge_candidates import judge_candidates
     from isotorque.runs.experiment import DATABASE
+    from isotorque.runs.options.recorded_robot import recorded_options
     from isotorque.runs.recorded_relations import (
         claimed_relations,
         judged_entry,
         recorded_limits,
         relations_found,
     )
-    from isotorque.runs.recorded_robot import recorded_options
-    from learning.recordings.recording_reader import RecordingReader
-    from learning.relations.candidate_maps import judge_candidates
-    from learning.relations.chain_identification import with_chain
-    from learning.relations.relation_learning import learn_relations
+    from isotorque.symbolic.common.files import write_whole
 
     noise = _noise(angle_noise, torque_noise)
     if candidates is None and noise is None and _of_a_chain(run, json=json, quiet=quiet):
@@ -110,7 +111,7 @@ def relations(
 
 def _of_a_chain(run: Path, *, json: bool, quiet: bool) -> bool:
     """Tell the relations of a chain that was learned without a robot; False if there is none."""
-    from isotorque.runs.chain_from_data import relations_of_saved_chain, write_relations
+    from isotorque.runs.from_data.chain_from_data import relations_of_saved_chain, write_relations
 
     document = relations_of_saved_chain(run)
     if document is None:
@@ -119,7 +120,7 @@ def _of_a_chain(run: Path, *, json: bool, quiet: bool) -> bool:
     if json:
         emit_json(document)
         return True
-    from verify.relation_files import load_relations
+    from isotorque.verify.relations.relation_files import load_relations
 
     listed = load_relations(run / "relations.json")
     print(f"{document['order']} relations from {document['samples']} samples, by a rigid chain:")
@@ -137,8 +138,8 @@ def _of_a_chain(run: Path, *, json: bool, quiet: bool) -> bool:
 
 def _noise(angle: float | None, torque: float | None) -> MeasurementNoise | None:
     from isotorque.cli.options import LARGEST
-    from learning.relations.errors_in_variables import MeasurementNoise
-    from symbolic.errors import InputError
+    from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+    from isotorque.symbolic.common.errors import InputError
 
     if angle is None and torque is None:
         return None

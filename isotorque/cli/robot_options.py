@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from isotorque.cli.output import say
-from symbolic.errors import InputError
-from symbolic.robot_options import RobotOptions
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.robot_options import RobotOptions
 
 if TYPE_CHECKING:
-    from symbolic.robots import Robot
+    from isotorque.symbolic.robots.load_robot import Robot
 
 
 def named(spec: str) -> RobotOptions:
@@ -125,7 +125,7 @@ def _refuse(options: RobotOptions, argument: str) -> None:
 
 def load(options: RobotOptions, quiet: bool) -> Robot:
     """Load a robot; say on standard error what is doubtful about it."""
-    from symbolic.robots import load_robot
+    from isotorque.symbolic.robots.load_robot import load_robot
 
     robot = load_robot(options)
     for warning in robot.warnings:

@@ -4,28 +4,27 @@ from __future__ import annotations
 
 from isotorque.cli.options import (
     AngleNoise,
+    ChosenPhysics,
+    Confirm,
     EncoderStep,
     Engine,
     Json,
-    Out,
-    Quiet,
-    Seed,
-    Settle,
-    TorqueNoise,
-)
-from isotorque.cli.output import emit_json, plain, say
-from isotorque.cli.robot_options import RobotName, load, takes_robot
-from isotorque.cli.run_options import (
-    ChosenPhysics,
-    Confirm,
     LearnAnyway,
     LearnerName,
     ModelTolerance,
     NMin,
+    Out,
+    Quiet,
     Samples,
+    Seed,
+    Settle,
     Strategy,
     Symmetries,
+    TorqueNoise,
 )
+from isotorque.cli.output import emit_json, say
+from isotorque.cli.robot_options import RobotName, load, takes_robot
+from isotorque.plain import plain
 
 
 @takes_robot()
@@ -58,14 +57,14 @@ def run(
     led. The same command resumes a run that was stopped.
     """
     from isotorque.cli.progress import progress_bars
-    from isotorque.files import output_directory
     from isotorque.runs.experiment import save_run_model
     from isotorque.runs.judgement import judge_run
-    from isotorque.runs.learn_options import run_options
+    from isotorque.runs.options.learn_options import run_options
+    from isotorque.runs.options.run_options import ArmOptions
+    from isotorque.runs.options.strategy import perform
     from isotorque.runs.recorded_relations import save_relations
-    from isotorque.runs.run_options import ArmOptions
-    from isotorque.runs.strategy import perform
-    from verify.report import write_report
+    from isotorque.symbolic.common.files import output_directory
+    from isotorque.verify.report.write_report import write_report
 
     arm = ArmOptions(seed, "open_loop", engine, settle, angle_noise, torque_noise, encoder_step)
     options = run_options(

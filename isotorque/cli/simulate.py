@@ -48,9 +48,9 @@ def simulate(
     """Apply a constant torque and wait until the arm settles, hits a limit or time is up."""
     import numpy as np
 
-    from learning.physics import MeasurementNoise
-    from learning.simulation.simulated_arm import SimulatedArm
-    from learning.torque_limits import check_torque
+    from isotorque.learning.discovery.torque_limits import check_torque
+    from isotorque.learning.simulator.settings import MeasurementNoise
+    from isotorque.learning.simulator.simulated_arm import SimulatedArm
 
     loaded = load(robot, quiet)
     tau = numbers(torque, "--torque", loaded.n)

@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from isotorque.cli.options import Json, Out, Quiet
+from isotorque.cli.options import Jobs, Json, Out, Quiet, Scheduler
 from isotorque.cli.output import emit_json, say
-from isotorque.cli.workers import Jobs, Scheduler
 
 Table = Annotated[
     Path,

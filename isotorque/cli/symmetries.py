@@ -37,11 +37,11 @@ def symmetries(
     quiet: Quiet = False,
 ) -> None:
     """Derive every map q -> A q + d under which gravity torques only change signs."""
-    from symbolic.approximate_symmetries import maximal_groups
-    from symbolic.gravity import GravityModel
-    from symbolic.relations import factor_structure, group_structure
-    from symbolic.symmetries import primary_symmetries
-    from verify.relation_files import relations_document
+    from isotorque.symbolic.gravity.gravity_model import GravityModel
+    from isotorque.symbolic.groups.symmetry_group import factor_structure, group_structure
+    from isotorque.symbolic.symmetries.approximate_symmetries import maximal_groups
+    from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+    from isotorque.verify.relations.relation_files import relations_document
 
     loaded = load(robot, quiet)
     start = time.perf_counter()

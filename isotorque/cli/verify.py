@@ -10,7 +10,7 @@ import typer
 from isotorque.cli.options import Json, Quiet
 from isotorque.cli.output import emit_json
 from isotorque.cli.robot_options import about, load, named, takes_robot
-from symbolic.robot_options import RobotOptions
+from isotorque.symbolic.common.robot_options import RobotOptions
 
 
 @takes_robot()
@@ -51,17 +51,17 @@ def verify(
     quiet: Quiet = False,
 ) -> int:
     """Judge what was learned or claimed: proof, bound, or a counterexample."""
-    from isotorque.runs.recorded_robot import as_recorded
-    from isotorque.verification import verify_path
-    from symbolic.gravity import GravityModel
+    from isotorque.runs.options.recorded_robot import as_recorded
+    from isotorque.runs.verification import verify_path
+    from isotorque.symbolic.gravity.gravity_model import GravityModel
 
     loaded = load(as_recorded(robot, what), quiet)
     gravity = GravityModel(loaded)
     verdicts = verify_path(what, loaded, gravity, tolerance)
     passed = all(verdict.passed for verdict in verdicts)
     if report is not None:
-        from isotorque.files import write_whole
-        from verify.report import verdicts_page
+        from isotorque.symbolic.common.files import write_whole
+        from isotorque.verify.report.write_report import verdicts_page
 
         write_whole(report, verdicts_page(f"{what.name} against {gravity.name}", verdicts))
     if json:

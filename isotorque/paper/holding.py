@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.paper.measured import Effort, Measured
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.paper.experiments.measured import Effort, Measured
 from isotorque.paper.published import RMSE_66
-from learning.simulation.simulated_arm import SimulatedArm
-from symbolic.gravity import GravityModel
-from symbolic.robots import Robot
-from verify.paper_targets import paper_targets
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import Robot
+from isotorque.verify.models.paper_targets import paper_targets
 
 Array = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ def seconds_held(arm: SimulatedArm, q: Array, torque: Array) -> float:
 
     Examples
     --------
-    >>> from symbolic.robots import load_robot
+    >>> from isotorque.symbolic.robots.load_robot import load_robot
     >>> arm, q = SimulatedArm(load_robot("pendulum")), np.array([np.pi / 2])
     >>> exact = GravityModel(load_robot("pendulum")).torque(q)
     >>> seconds_held(arm, q, exact + 1e-2) < seconds_held(arm, q, exact + 1e-4)

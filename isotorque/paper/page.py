@@ -11,27 +11,27 @@ from pathlib import Path
 import jinja2
 from markupsafe import Markup
 
-from isotorque.cli.output import plain
-from isotorque.files import output_directory, write_whole
 from isotorque.paper import published
-from isotorque.paper.pictures_configurations import (
+from isotorque.paper.figures.configurations import (
     arm_pictures,
     domain_picture,
     online_pictures,
     structure_picture,
     symmetry_pictures,
 )
-from isotorque.paper.pictures_torques import (
+from isotorque.paper.figures.torques import (
     batch_pictures,
     discovery_pictures,
     learning_pictures,
     static_torque_pictures,
 )
 from isotorque.paper.run import QUICK, Comparison, PaperOptions
-from isotorque.paper.text import markdown, shown
-from verify.figures.style import save_figure, to_svg
-from verify.report_figures import Picture
-from verify.report_text import number
+from isotorque.paper.table.text import markdown, shown
+from isotorque.plain import plain
+from isotorque.symbolic.common.files import output_directory, write_whole
+from isotorque.verify.report.figures.style import save_figure, to_svg
+from isotorque.verify.report.figures_of_run import Picture
+from isotorque.verify.report.html_text import number
 
 Progress = Callable[[str, int, int, str], None]
 ENDINGS = (".svg", ".pdf")
@@ -96,7 +96,7 @@ def paper_pictures(comparison: Comparison) -> Iterator[Picture]:
 def render_page(comparison: Comparison, pictures: list[Picture]) -> str:
     """Return the HTML page: self-contained, without scripts."""
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("verify"),
+        loader=jinja2.PackageLoader("isotorque.verify.report"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,

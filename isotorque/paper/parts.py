@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from isotorque.files import output_directory, write_whole
-from learning.recordings.run_info import software_versions
-from symbolic.errors import InputError
+from isotorque.learning.files.software_versions import software_versions
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.files import output_directory, write_whole
 
 FORMAT = 1
 

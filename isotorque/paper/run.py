@@ -7,16 +7,16 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from isotorque.files import output_directory
-from isotorque.paper.experiments import experiments_of
-from isotorque.paper.items import ITEMS
-from isotorque.paper.measured import Experiment
+from isotorque.learning.files.software_versions import software_versions
+from isotorque.paper.experiments.experiments import experiments_of
+from isotorque.paper.experiments.measured import Experiment
 from isotorque.paper.parts import Parts
-from isotorque.paper.table import Row, make_rows
+from isotorque.paper.table.items import ITEMS
+from isotorque.paper.table.table import Row, make_rows
 from isotorque.paper.work import Piece, perform
 from isotorque.parallel import in_processes, on_cluster
-from learning.recordings.run_info import software_versions
-from symbolic.robots import load_robot
+from isotorque.symbolic.common.files import output_directory
+from isotorque.symbolic.robots.load_robot import load_robot
 
 Progress = Callable[[str, int, int, str], None]
 ROBOTS = ("2r", "3r")
@@ -38,7 +38,7 @@ class PaperOptions:
     seeds : int
         Number of seeds; they are seed, seed + 1, ...
     share : float
-        See `isotorque.paper.measured.Effort`.
+        See `isotorque.paper.experiments.measured.Effort`.
     jobs : int
         Local processes.
     scheduler : str or None

@@ -7,11 +7,11 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from isotorque.cli.output import plain
-from isotorque.paper.experiments import experiment
-from isotorque.paper.measured import Effort
-from learning.recordings.run_info import software_versions
-from symbolic.robots import load_robot
+from isotorque.learning.files.software_versions import software_versions
+from isotorque.paper.experiments.experiments import experiment
+from isotorque.paper.experiments.measured import Effort
+from isotorque.plain import plain
+from isotorque.symbolic.robots.load_robot import load_robot
 
 
 @dataclass(frozen=True)

@@ -12,29 +12,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from isotorque.learning.arm import OutcomeKind
+from isotorque.learning.discovery.torque_limits import TorqueLimitedArm
+from isotorque.learning.exploration.exploration import ExplorationStep
+from isotorque.learning.exploration.guided_arm import LedArm
+from isotorque.learning.exploration.registry import DIRECTIONS, LED
+from isotorque.learning.files.saved_models import SavedModel, save_model
+from isotorque.learning.learners.memory.collected_samples import CollectedSamples
+from isotorque.learning.learners.registry import BATCH_LEARNERS, learner_by_name, online_learner
+from isotorque.learning.recordings.recorded_simulation import RecordedSimulation
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.scheme import Discovery, LearnerFactory, Scheme, SchemeSettings
+from isotorque.learning.simulator.settings import PhysicsMode
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
-from isotorque.runs.robot_copy import keep_robot_file
-from isotorque.runs.run_options import LATTICE, RunOptions
+from isotorque.runs.options.robot_copy import keep_robot_file
+from isotorque.runs.options.run_options import LATTICE, RunOptions
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.single_thread import single_thread
-from learning.arm import OutcomeKind
-from learning.exploration.by_name import DIRECTIONS, LED
-from learning.exploration.led_arm import LedArm
-from learning.exploration.step import ExplorationStep
-from learning.learners.by_name import BATCH_LEARNERS, learner_by_name, online_learner
-from learning.learners.collected_samples import CollectedSamples
-from learning.model_files import SavedModel, save_model
-from learning.physics import PhysicsMode
-from learning.recordings.recorded_simulation import RecordedSimulation
-from learning.recordings.recording import Recording
-from learning.scheme import Discovery, LearnerFactory, Scheme, SchemeSettings
-from learning.simulation.simulated_arm import SimulatedArm
-from learning.torque_limits import TorqueLimitedArm
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryGroup
-from symbolic.robots import Robot, load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.robots.load_robot import Robot, load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 Array = NDArray[np.float64]
 Progress = Callable[[str, int, int, str], None]

@@ -9,31 +9,41 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from isotorque.learning.arm import OutcomeKind
+from isotorque.learning.files.software_versions import software_versions
+from isotorque.learning.learners.registry import EQUIVARIANT_LEARNERS
+from isotorque.learning.relations.reachable_relation import is_executable
+from isotorque.learning.static_torques.static_torque_set import StaticTorqueSet
 from isotorque.runs.experiment import RunOutcome
-from learning.arm import OutcomeKind
-from learning.learners.by_name import EQUIVARIANT_LEARNERS
-from learning.recordings.run_info import software_versions
-from learning.relations.executable import is_executable
-from learning.static_torques.static_torque_set import StaticTorqueSet
-from symbolic.level_curves import level_curves
-from symbolic.level_sets import level_set
-from verify.figures.learning_curves import LearningCurve
-from verify.figures.planar_links import planar_links
-from verify.largest_errors import default_tolerance
-from verify.learned_symmetries import judge_relations, judge_symmetries, soundness
-from verify.models import ModelJudgement, TargetResult, verify_model
-from verify.paper_targets import paper_targets
-from verify.run_parts import StaticTorqueReport
-from verify.run_report import LevelSetReport, RunReport, RunSetup, Stage, SymmetryReport
-from verify.run_summary import (
+from isotorque.symbolic.level_sets.level_curves import level_curves
+from isotorque.symbolic.level_sets.level_set import level_set
+from isotorque.verify.models.largest_errors import default_tolerance
+from isotorque.verify.models.paper_targets import paper_targets
+from isotorque.verify.models.target_sets import TargetSet
+from isotorque.verify.models.verify_model import ModelJudgement, TargetResult, verify_model
+from isotorque.verify.relations.learned_symmetries import (
+    judge_relations,
+    judge_symmetries,
+    soundness,
+)
+from isotorque.verify.report.figures.learning_curves import LearningCurve
+from isotorque.verify.report.figures.planar_links import planar_links
+from isotorque.verify.report.parts import StaticTorqueReport
+from isotorque.verify.report.run_report import (
+    LevelSetReport,
+    RunReport,
+    RunSetup,
+    Stage,
+    SymmetryReport,
+)
+from isotorque.verify.report.summaries import (
     summarise_discovery,
     summarise_domain,
     summarise_exploration,
     summarise_static_torques,
 )
-from verify.static_torques import MOST_JOINTS, judge_static_torques
-from verify.targets import TargetSet
-from verify.verdict import Status, Verdict
+from isotorque.verify.static_torques.judge_static_torques import MOST_JOINTS, judge_static_torques
+from isotorque.verify.verdict import Status, Verdict
 
 Array = NDArray[np.float64]
 

@@ -8,6 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from isotorque.learning.arm import Settled
+from isotorque.learning.exploration.exploration import ExplorationStep
+from isotorque.learning.exploration.targets import Phase
+from isotorque.learning.learners.registry import ONLINE_LEARNERS, LearningTask, learner_by_name
+from isotorque.learning.recordings.recorded_simulation import RecordedSimulation
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.relations.learn_relations import learn_relations
+from isotorque.learning.sampling.reachable_lattice import ReachableLattice, reachable_lattice, visit
 from isotorque.runs.experiment import (
     LEARNING,
     Progress,
@@ -18,21 +26,13 @@ from isotorque.runs.experiment import (
 )
 from isotorque.runs.learned_model import LearnedModel, model_of_run
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
-from isotorque.runs.robot_copy import keep_robot_file
-from isotorque.runs.run_options import RunOptions
+from isotorque.runs.options.robot_copy import keep_robot_file
+from isotorque.runs.options.run_options import RunOptions
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.single_thread import single_thread
-from learning.arm import Settled
-from learning.exploration.step import ExplorationStep
-from learning.exploration.targets import Phase
-from learning.learners.by_name import ONLINE_LEARNERS, LearningTask, learner_by_name
-from learning.recordings.recorded_simulation import RecordedSimulation
-from learning.recordings.recording import Recording
-from learning.relations.relation_learning import learn_relations
-from learning.sampling.reachable_lattice import ReachableLattice, reachable_lattice, visit
-from symbolic.domain import FundamentalDomain
-from symbolic.relations import SymmetryGroup
-from symbolic.robots import Robot
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.robots.load_robot import Robot
 
 Array = NDArray[np.float64]
 

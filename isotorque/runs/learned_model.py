@@ -10,10 +10,10 @@ import numpy as np
 
 from isotorque.runs.experiment import RunOutcome, save_learner
 from isotorque.runs.learning_curve import CurvePoint
-from isotorque.runs.run_options import RunOptions
-from symbolic.gravity import GravityModel
-from symbolic.robots import Robot
-from verify.models import verify_model
+from isotorque.runs.options.run_options import RunOptions
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import Robot
+from isotorque.verify.models.verify_model import verify_model
 
 
 @dataclass(frozen=True, eq=False)

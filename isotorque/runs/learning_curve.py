@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.learners.by_name import ONLINE_LEARNERS
-from symbolic.gravity import GravityModel
-from symbolic.robots import Robot
-from verify.models import torque_rmse
-from verify.targets import dense_targets
+from isotorque.learning.learners.registry import ONLINE_LEARNERS
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import Robot
+from isotorque.verify.models.target_sets import dense_targets
+from isotorque.verify.models.verify_model import torque_rmse
 
 Array = NDArray[np.float64]
 

@@ -8,21 +8,21 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from isotorque.files import write_whole
+from isotorque.learning.recordings.recording_reader import RecordingReader, SettledSamples
+from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
+from isotorque.learning.relations.reachable_relation import is_executable
+from isotorque.learning.relations.testing.judge_candidates import JudgedCandidate
 from isotorque.runs.experiment import RunOutcome
-from isotorque.runs.recorded_robot import as_recorded
-from isotorque.runs.robot_copy import recorded_robot
+from isotorque.runs.options.recorded_robot import as_recorded
+from isotorque.runs.options.robot_copy import recorded_robot
 from isotorque.runs.stages import DATABASE
-from learning.recordings.recording_reader import RecordingReader, SettledSamples
-from learning.relations.candidate_maps import JudgedCandidate
-from learning.relations.executable import is_executable
-from learning.relations.learned_symmetries import LearnedSymmetries
-from symbolic.gravity import GravityModel
-from symbolic.relations import SymmetryRelation
-from symbolic.robot_options import RobotOptions
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
-from verify.relation_files import load_relations, relations_document
+from isotorque.symbolic.common.files import write_whole
+from isotorque.symbolic.common.robot_options import RobotOptions
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.relations.relation_files import load_relations, relations_document
 
 
 def claimed_relations(

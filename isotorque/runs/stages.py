@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from isotorque.runs.run_options import ArmOptions
-from learning.home_torque import holds_itself
-from learning.physics import MeasurementNoise, PhysicsMode
-from learning.recordings.recording_reader import RecordingReader
-from learning.recordings.run_info import RunInfo
-from learning.simulation.simulated_arm import SimulatedArm
-from symbolic.robot_options import RobotOptions
-from symbolic.robots import Robot
+from isotorque.learning.discovery.home_torque import holds_itself
+from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.recordings.recording_reader import RecordingReader
+from isotorque.learning.simulator.settings import MeasurementNoise, PhysicsMode
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.runs.options.run_options import ArmOptions
+from isotorque.symbolic.common.robot_options import RobotOptions
+from isotorque.symbolic.robots.load_robot import Robot
 
 DATABASE = "run.sqlite"
 TRIAL = 2

@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from isotorque.files import output_directory, write_whole
+from isotorque.learning.files.software_versions import software_versions
 from isotorque.paper.parts import Parts
 from isotorque.parallel import in_processes, on_cluster
 from isotorque.runs.experiment import run_experiment
 from isotorque.runs.lattice_learning import learn_from_lattice
-from isotorque.runs.run_options import LATTICE
+from isotorque.runs.options.run_options import LATTICE
 from isotorque.sweeps.sweep_table import SweepRun, told_options
-from learning.recordings.run_info import software_versions
-from symbolic.errors import InputError
-from verify.figures.learning_curves import LearningCurve, curve_panels
-from verify.figures.style import save_figure
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.files import output_directory, write_whole
+from isotorque.verify.report.figures.learning_curves import LearningCurve, curve_panels
+from isotorque.verify.report.figures.style import save_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -17,12 +17,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from isotorque.runs.learn_options import learn_options
-from isotorque.runs.run_options import LATTICE, ArmOptions, RunOptions, default_samples
-from learning.exploration.by_name import DIRECTIONS
-from symbolic.errors import InputError
-from symbolic.robot_options import RobotOptions
-from symbolic.robots import STANDARD_INPUT, load_robot
+from isotorque.learning.exploration.registry import DIRECTIONS
+from isotorque.runs.options.learn_options import learn_options
+from isotorque.runs.options.run_options import LATTICE, ArmOptions, RunOptions, default_samples
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.robot_options import RobotOptions
+from isotorque.symbolic.robots.load_robot import STANDARD_INPUT, load_robot
 
 SAMPLES = 1000
 """Torques commanded in a run where the table does not say."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.symmetry_use import GroupArrays, SymmetryCoordinates
-from symbolic.compiled import compiled
-from symbolic.errors import InputError
+from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
+from isotorque.symbolic.common.compiled import compiled
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 
 @dataclass(frozen=True)

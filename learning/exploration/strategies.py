@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.arm import Arm, Outcome
-from learning.exploration.cell import ExplorationCell
-from learning.exploration.explored_share import ExploredShare
-from learning.exploration.loop import Exploration, Learner
-from learning.exploration.settings import ExplorationSettings
-from learning.exploration.static_projection import StaticTorques
-from learning.exploration.step import Counts, ExplorationStep
-from learning.exploration.targets import DirectionTargets, Domain, GoalTargets, Target, TargetSource
-from symbolic.relations import wrap
+from isotorque.learning.arm import Arm, GuidedArm, Outcome
+from isotorque.learning.exploration.exploration import Counts, Exploration, ExplorationStep, Learner
+from isotorque.learning.exploration.exploration_cell import ExplorationCell
+from isotorque.learning.exploration.explored_share import ExploredShare
+from isotorque.learning.exploration.settings import ExplorationSettings
+from isotorque.learning.exploration.static_projection import StaticTorques
+from isotorque.learning.exploration.targets import (
+    DirectionTargets,
+    Domain,
+    GoalTargets,
+    Target,
+    TargetSource,
+)
+from isotorque.symbolic.common.angles import wrap
 
 __all__ = [
     "ConstrainedDirectionSampling",
@@ -86,18 +91,6 @@ class DirectionSampling(Exploration):
 
     def _make_targets(self, home: Vector) -> TargetSource:
         return _direction_targets(self, home)
-
-
-class GuidedArm(Arm, Protocol):
-    """An arm that can be placed and held from outside (``SimulatedArm`` in guided physics)."""
-
-    def place(self, q: Vector) -> None:
-        """Place the arm at rest at q (n,) [rad]."""
-        ...
-
-    def hold(self) -> Outcome:
-        """Measure the torque that holds the arm where it is."""
-        ...
 
 
 class GuidedDirectionSampling(Exploration):

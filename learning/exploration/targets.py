@@ -10,8 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from symbolic.errors import InputError
-from symbolic.relations import wrap
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.common.errors import InputError
 
 Vector = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class Phase(StrEnum):
 
 
 class Domain(Protocol):
-    """The part of the configuration space to explore (``symbolic.domain.FundamentalDomain``)."""
+    """The part of the configuration space to explore (``FundamentalDomain``)."""
 
     def contains(self, q: Vector) -> Any:
         """Whether the configuration (n,) [rad] lies in the domain."""

@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from learning.export.chain_recursion import ChainRecursion
-from learning.export.kernels import Kernels
-from learning.export.local_functions import LocalFunctions
-from learning.export.tanh_units import TanhUnits
-from learning.export.torque_form import TorqueForm
-from learning.export.waves import Waves
-from symbolic.errors import InputError
+from isotorque.learning.export.chain_recursion import ChainRecursion
+from isotorque.learning.export.kernels import Kernels
+from isotorque.learning.export.local_functions import LocalFunctions
+from isotorque.learning.export.tanh_units import TanhUnits
+from isotorque.learning.export.torque_form import TorqueForm
+from isotorque.learning.export.waves import Waves
+from isotorque.symbolic.common.errors import InputError
 
 SCHEMA = 1
 FORMAT = "isotorque export"
@@ -34,7 +34,7 @@ class ExportedArrays:
     Attributes
     ----------
     form : TorqueForm
-        What computes the torques: `learning.export.torque_form.evaluate`.
+        What computes the torques: `evaluate`.
     robot, digest : str
         Name and hash (kinematics, inertias, limits, damping) of the robot it is about.
     joint_names : tuple of str

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from learning.export.c_tables import comment
-from learning.export.torque_form import TorqueForm
-from symbolic.errors import InputError
+from isotorque.learning.export.c_tables import comment
+from isotorque.learning.export.torque_form import TorqueForm
+from isotorque.symbolic.common.errors import InputError
 
 
 def c_source(form: TorqueForm, about: Sequence[str] = (), joints: Sequence[str] = ()) -> str:
@@ -15,7 +15,7 @@ def c_source(form: TorqueForm, about: Sequence[str] = (), joints: Sequence[str] 
     Parameters
     ----------
     form
-        What to write, see `learning.export.from_learner.torque_form`.
+        What to write, see `torque_form`.
     about
         Lines for the comment at its head: what was learned, on which robot.
     joints
@@ -37,7 +37,7 @@ def c_source(form: TorqueForm, about: Sequence[str] = (), joints: Sequence[str] 
     Examples
     --------
     >>> import numpy as np
-    >>> from learning.export.waves import Waves
+    >>> from isotorque.learning.export.waves import Waves
     >>> pendulum = Waves(np.array([[1]]), np.array([[6.13]]), np.array([[0.0]]))
     >>> [line for line in c_source(pendulum).splitlines() if line.startswith("void")]
     ['void isotorque_gravity(const double *q, double *tau)']

@@ -8,11 +8,11 @@ import casadi
 import numpy as np
 from numpy.typing import ArrayLike
 
-from learning.export.torque_form import TorqueForm
+from isotorque.learning.export.torque_form import TorqueForm
 
 
 class CasadiSpace:
-    """CasADi's matrix expressions as a `learning.export.space.Space`."""
+    """CasADi's matrix expressions as a `Space`."""
 
     def constant(self, table: ArrayLike) -> Any:
         """See `Space`."""
@@ -65,7 +65,7 @@ def casadi_function(form: TorqueForm, name: str = "gravity") -> casadi.Function:
     Parameters
     ----------
     form
-        What to write, see `learning.export.from_learner.torque_form`.
+        What to write, see `torque_form`.
     name
         Name of the function.
 
@@ -82,7 +82,7 @@ def casadi_function(form: TorqueForm, name: str = "gravity") -> casadi.Function:
 
     Examples
     --------
-    >>> from learning.export.waves import Waves
+    >>> from isotorque.learning.export.waves import Waves
     >>> gravity = casadi_function(Waves(np.array([[1]]), np.array([[6.13]]), np.array([[0.0]])))
     >>> print(gravity([0.0]))
     6.13

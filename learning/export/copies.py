@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.export.c_tables import Tables
-from learning.export.space import Space
-from learning.symmetry_use import SymmetryCoordinates
+from isotorque.learning.export.c_tables import Tables
+from isotorque.learning.export.space import Space
+from isotorque.learning.learners.symmetry_coordinates import SymmetryCoordinates
 
 Array = NDArray[np.float64]
 TURN = 2 * np.pi

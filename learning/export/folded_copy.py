@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.export.c_tables import Tables
-from learning.export.copies import TURN, wrap
-from learning.export.space import Space
-from symbolic.domain import FundamentalDomain
+from isotorque.learning.export.c_tables import Tables
+from isotorque.learning.export.copies import TURN, Copies, wrap
+from isotorque.learning.export.space import Space
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 
 Array = NDArray[np.float64]
 SLACK = 1e-6  # copies that miss the domain by no more are kept as candidates
@@ -33,9 +33,10 @@ class FoldedCopy:
 
     Notes
     -----
-    `symbolic.folding` walks from cell to cell; here all images of the box of wrapped coordinates
-    that touch the domain are listed once, so a controller does the same work for every q. On the
-    boundary of the domain, where several copies are in it, another one may be taken than there.
+    `orbit_representatives` walks from cell to cell; here all images of the box of wrapped
+    coordinates that touch the domain are listed once, so a controller does the same work for every
+    q. On the boundary of the domain, where several copies are in it, another one may be taken than
+    there.
     """
 
     basis: Array
@@ -148,3 +149,22 @@ static int copy_of(int first, const double *q, double *y)
     return chosen;
 }
 """
+
+
+def copies_to_arrays(copies: Copies | FoldedCopy) -> dict[str, NDArray]:
+    """Arrays by name, each name beginning with ``copy_``."""
+    arrays = {"linear": copies.linear, "offset": copies.offset, "signs": copies.signs}
+    if isinstance(copies, FoldedCopy):
+        arrays |= {"basis": copies.basis, "halfspaces": copies.halfspaces}
+    else:
+        arrays["wrapped"] = np.array(copies.wrapped)
+    return {f"copy_{name}": array for name, array in arrays.items()}
+
+
+def copies_from_arrays(arrays: dict[str, NDArray]) -> Copies | FoldedCopy:
+    """Inverse of `copies_to_arrays`."""
+    linear, offset, signs = (arrays[f"copy_{name}"] for name in ("linear", "offset", "signs"))
+    if "copy_halfspaces" in arrays:
+        basis, halfspaces = arrays["copy_basis"], arrays["copy_halfspaces"]
+        return FoldedCopy(basis, linear, offset, signs, halfspaces)
+    return Copies(linear, offset, signs, bool(arrays["copy_wrapped"]))

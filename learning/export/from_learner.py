@@ -7,26 +7,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.export.chain_recursion import ChainRecursion
-from learning.export.copies import Copies
-from learning.export.folded_copy import FoldedCopy
-from learning.export.kernels import Kernels
-from learning.export.local_functions import LocalFunctions
-from learning.export.tanh_units import TanhUnits
-from learning.export.torque_form import TorqueForm
-from learning.export.waves import Waves
-from learning.learners.dictionary_learner import DictionaryLearner
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.network import FeedForwardNetwork
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
-from learning.learners.rigid.canonical_form import CanonicalForm
-from learning.learners.rigid.rigid_chain import RigidChain
-from learning.learners.sample_checks import fitted
-from learning.learners.static_regressor import StaticRegressor
-from learning.learners.symmetric_kernel import distinct_rows
-from learning.learners.trigonometric import EquivariantTrigonometric
-from symbolic.errors import InputError
+from isotorque.learning.export.chain_recursion import ChainRecursion
+from isotorque.learning.export.copies import Copies
+from isotorque.learning.export.folded_copy import FoldedCopy
+from isotorque.learning.export.kernels import Kernels
+from isotorque.learning.export.local_functions import LocalFunctions
+from isotorque.learning.export.tanh_units import TanhUnits
+from isotorque.learning.export.torque_form import TorqueForm
+from isotorque.learning.export.waves import Waves
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.gaussian_process.symmetric_kernel import distinct_rows
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
+from isotorque.learning.learners.memory.dictionary_learner import DictionaryLearner
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
+from isotorque.learning.learners.rigid.structure.canonical_form import CanonicalForm
+from isotorque.learning.learners.sample_checks import fitted
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 MOST_JOINTS = 10  # 3^n torques make the waves of a static regressor
@@ -52,7 +54,7 @@ def torque_form(learner: Any) -> TorqueForm:
 
     Examples
     --------
-    >>> from learning.export.torque_form import evaluate
+    >>> from isotorque.learning.export.torque_form import evaluate
     >>> q = np.linspace(-3.0, 3.0, 9)[:, None]
     >>> pendulum = EquivariantTrigonometric().fit(q, 5.0 * np.cos(q))
     >>> form = torque_form(pendulum)

@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.export.c_tables import Tables
-from learning.export.copies import TURN, Copies, wrap
-from learning.export.copy_arrays import copies_from_arrays, copies_to_arrays
-from learning.export.space import Space
+from isotorque.learning.export.c_tables import Tables
+from isotorque.learning.export.copies import TURN, Copies, wrap
+from isotorque.learning.export.folded_copy import copies_from_arrays, copies_to_arrays
+from isotorque.learning.export.space import Space
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 

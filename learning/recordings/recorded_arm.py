@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from learning.arm import Arm, Outcome, OutcomeKind, Playback, Vector
-from learning.recordings.recorded_command import (
+from isotorque.learning.arm import Arm, Outcome, OutcomeKind, Playback, Vector
+from isotorque.learning.recordings.recorded_command import (
     CommandKind,
     Row,
     outcome_in,
@@ -20,10 +20,10 @@ from learning.recordings.recorded_command import (
     to_array,
     to_bytes,
 )
-from learning.recordings.recording import Recording
-from learning.recordings.recording_error import RecordingError
-from learning.recordings.recording_queries import playback_of
-from symbolic.errors import InputError
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_queries import playback_of
+from isotorque.symbolic.common.errors import InputError
 
 
 class RecordedArm:
@@ -37,7 +37,7 @@ class RecordedArm:
     Parameters
     ----------
     arm
-        The arm: anything that satisfies ``learning.arm.Arm``. ``state()`` and
+        The arm: anything that satisfies ``Arm``. ``state()`` and
         ``restore(state)``, where it has them, put it back exactly; the state is plain data, or a
         frozen dataclass of plain data with ``from_json(mapping)``. Without them the arm goes home
         when a run is resumed. None replays only. Measurement noise must come from a generator of
@@ -77,8 +77,8 @@ class RecordedArm:
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from learning.arm import Settled
-    >>> from learning.recordings.run_info import RunInfo
+    >>> from isotorque.learning.arm import Settled
+    >>> from isotorque.learning.files.run_info import RunInfo
     >>> class Spring:
     ...     q = np.zeros(1)
     ...

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 
 @dataclass(frozen=True, eq=False)

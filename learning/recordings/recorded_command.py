@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from learning.arm import LimitHit, Outcome, OutcomeKind, Settled, TimedOut, Vector
-from learning.recordings.recording_schema import checksum, command_id
+from isotorque.learning.arm import LimitHit, Outcome, OutcomeKind, Settled, TimedOut, Vector
+from isotorque.learning.recordings.recording_schema import checksum, command_id
 
 FLOATS = np.dtype("<f8")
 

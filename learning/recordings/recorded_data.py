@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from learning.arm import Settled
-from learning.recordings.csv_data import StaticSamples
-from learning.recordings.recorded_command import CommandKind, row_of, to_bytes
-from learning.recordings.recording import Recording
-from learning.recordings.recording_error import RecordingError
-from symbolic.errors import InputError
+from isotorque.learning.arm import Settled
+from isotorque.learning.files.csv_samples import StaticSamples
+from isotorque.learning.recordings.recorded_command import CommandKind, row_of, to_bytes
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.recordings.recording_error import RecordingError
+from isotorque.symbolic.common.errors import InputError
 
 
 def record_samples(recording: Recording, samples: StaticSamples, phase: str = "learning") -> None:

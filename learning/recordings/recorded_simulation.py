@@ -7,14 +7,20 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from learning.arm import Outcome
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recorded_command import CommandKind, Row, outcome_in, to_array, to_bytes
-from learning.simulation.results import Hold, Release
+from isotorque.learning.arm import Outcome
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recorded_command import (
+    CommandKind,
+    Row,
+    outcome_in,
+    to_array,
+    to_bytes,
+)
+from isotorque.learning.simulator.results import Hold, Release
 
 
 class RecordedSimulation(RecordedArm):
-    """A ``RecordedArm`` around a ``learning.simulation.simulated_arm.SimulatedArm``.
+    """A ``RecordedArm`` around a ``SimulatedArm``.
 
     Parameters and errors are those of ``RecordedArm``.
 
@@ -22,10 +28,10 @@ class RecordedSimulation(RecordedArm):
     --------
     >>> import tempfile
     >>> from pathlib import Path
-    >>> from learning.recordings.recording import Recording
-    >>> from learning.recordings.run_info import RunInfo
-    >>> from learning.simulation.simulated_arm import SimulatedArm
-    >>> from symbolic.robots import load_robot
+    >>> from isotorque.learning.recordings.recording import Recording
+    >>> from isotorque.learning.files.run_info import RunInfo
+    >>> from isotorque.learning.simulator.simulated_arm import SimulatedArm
+    >>> from isotorque.symbolic.robots.load_robot import load_robot
     >>> robot = load_robot("2r")
     >>> arm = SimulatedArm(robot, physics="guided")
     >>> options = {"arm": arm.settings.as_json()}

@@ -9,14 +9,20 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from learning.arm import Outcome, Vector
-from learning.recordings.commit_log import CommitLog, Statement
-from learning.recordings.recorded_checkpoint import Checkpoint, pack_arrays
-from learning.recordings.recorded_command import CommandKind, Row, row_of
-from learning.recordings.recording_error import clear_errors
-from learning.recordings.recording_file import check_before_writing, part_statement, write_new_file
-from learning.recordings.recording_lock import WriterLock
-from learning.recordings.recording_queries import (
+from isotorque.learning.arm import Outcome, Vector
+from isotorque.learning.files.run_info import RunInfo, canonical_json
+from isotorque.learning.files.software_versions import software_versions
+from isotorque.learning.recordings.commit_log import CommitLog, Statement
+from isotorque.learning.recordings.recorded_checkpoint import Checkpoint, pack_arrays
+from isotorque.learning.recordings.recorded_command import CommandKind, Row, row_of
+from isotorque.learning.recordings.recording_error import clear_errors
+from isotorque.learning.recordings.recording_file import (
+    check_before_writing,
+    part_statement,
+    write_new_file,
+)
+from isotorque.learning.recordings.recording_lock import WriterLock
+from isotorque.learning.recordings.recording_queries import (
     RecordedPart,
     read_checkpoint,
     read_motion,
@@ -24,8 +30,8 @@ from learning.recordings.recording_queries import (
     read_rows,
     read_state,
 )
-from learning.recordings.recording_reader import RecordingReader
-from learning.recordings.recording_schema import (
+from isotorque.learning.recordings.recording_reader import RecordingReader
+from isotorque.learning.recordings.recording_schema import (
     CHECKPOINT,
     COMMAND,
     MOTION,
@@ -34,7 +40,6 @@ from learning.recordings.recording_schema import (
     checked,
     command_id,
 )
-from learning.recordings.run_info import RunInfo, canonical_json, software_versions
 
 REPLAY_CHUNK = 4096
 

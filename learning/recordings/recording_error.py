@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 READABLE = "a file and directory this user may read and write"
 

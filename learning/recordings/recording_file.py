@@ -5,12 +5,18 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from learning.recordings.commit_log import Statement
-from learning.recordings.recording_check import check_content
-from learning.recordings.recording_error import RecordingError
-from learning.recordings.recording_queries import RecordedPart, read_parts, read_robot
-from learning.recordings.recording_schema import PART, ROBOT, checked, connect, create_tables
-from learning.recordings.run_info import RunInfo, canonical_json
+from isotorque.learning.files.run_info import RunInfo, canonical_json
+from isotorque.learning.recordings.commit_log import Statement
+from isotorque.learning.recordings.recording_check import check_content
+from isotorque.learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_queries import RecordedPart, read_parts, read_robot
+from isotorque.learning.recordings.recording_schema import (
+    PART,
+    ROBOT,
+    checked,
+    connect,
+    create_tables,
+)
 
 
 def part_statement(part: RecordedPart) -> Statement:

@@ -6,7 +6,7 @@ import fcntl
 import os
 from pathlib import Path
 
-from learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_error import RecordingError
 
 
 class WriterLock:

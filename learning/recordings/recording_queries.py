@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from learning.arm import Outcome, Playback
-from learning.recordings.recorded_checkpoint import Checkpoint, unpack_arrays
-from learning.recordings.recorded_command import Row, outcome_in, to_array
-from learning.recordings.recording_schema import command_id
-from learning.recordings.run_info import RunInfo
+from isotorque.learning.arm import Outcome, Playback
+from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.recordings.recorded_checkpoint import Checkpoint, unpack_arrays
+from isotorque.learning.recordings.recorded_command import Row, outcome_in, to_array
+from isotorque.learning.recordings.recording_schema import command_id
 
 
 @dataclass(frozen=True)

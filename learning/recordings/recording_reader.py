@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.arm import OutcomeKind, Playback, Vector
-from learning.recordings.csv_data import StaticSamples
-from learning.recordings.recorded_checkpoint import Checkpoint
-from learning.recordings.recorded_command import FLOATS, RecordedCommand, Row
-from learning.recordings.recording_check import check_content
-from learning.recordings.recording_error import RecordingError, clear_errors
-from learning.recordings.recording_queries import (
+from isotorque.learning.arm import OutcomeKind, Playback, Vector
+from isotorque.learning.files.csv_samples import StaticSamples
+from isotorque.learning.recordings.recorded_checkpoint import Checkpoint
+from isotorque.learning.recordings.recorded_command import FLOATS, RecordedCommand, Row
+from isotorque.learning.recordings.recording_check import check_content
+from isotorque.learning.recordings.recording_error import RecordingError, clear_errors
+from isotorque.learning.recordings.recording_queries import (
     RecordedPart,
     read_checkpoint,
     read_parts,
@@ -25,7 +25,7 @@ from learning.recordings.recording_queries import (
     read_robot,
     read_rows,
 )
-from learning.recordings.recording_schema import check_schema, connect
+from isotorque.learning.recordings.recording_schema import check_schema, connect
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +105,8 @@ class RecordingReader:
     Examples
     --------
     >>> import tempfile
-    >>> from learning.recordings.recording import Recording
-    >>> from learning.recordings.run_info import RunInfo
+    >>> from isotorque.learning.recordings.recording import Recording
+    >>> from isotorque.learning.files.run_info import RunInfo
     >>> directory = tempfile.TemporaryDirectory()
     >>> path = Path(directory.name) / "run.sqlite"
     >>> Recording.create(path, RunInfo("2r", "1f0c", ("shoulder", "elbow"), seed=7)).close()

@@ -7,7 +7,7 @@ import zlib
 from pathlib import Path
 from typing import Any
 
-from learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_error import RecordingError
 
 APPLICATION_ID = 0x49534F54
 """Marks the SQLite file as ours: "ISOT"."""

@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.learners.rigid.rigid_chain import RigidChain
-from learning.learners.rigid.verdict import Verdict
-from learning.relations.errors_in_variables import MeasurementNoise
-from learning.relations.learned_symmetries import Knowledge, LearnedRelation, LearnedSymmetries
-from learning.relations.samples import static_samples
+from isotorque.learning.learners.rigid.fitting.verdict import Verdict
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.learning.relations.learned_symmetries import (
+    Knowledge,
+    LearnedRelation,
+    LearnedSymmetries,
+)
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.learning.relations.static_samples import static_samples
 
 Array = NDArray[np.float64]
 
@@ -72,7 +76,7 @@ def identify_by_chain(
     -----
     Where one potential for all torques of any arm needs ``(3^n - 1) / n`` samples (`identify`), a
     chain needs four to eight, as it has 4 n - 1 numbers. Relations are those of the snapped chain;
-    their bounds are of the arm that was measured (`learning.learners.rigid.chain_symmetries`).
+    their bounds are of the arm that was measured (`chain_symmetries`).
 
     Examples
     --------

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.relations.candidate_group import CandidateGroup
-from learning.relations.group_fit import torque_uncertainty
-from learning.relations.lifting import lifted_relations
-from learning.relations.potential_fit import FittedPotential
-from learning.statistics.lack_of_fit import LackOfFit
+from isotorque.learning.relations.identification.group_fit import torque_uncertainty
+from isotorque.learning.relations.potential.potential_fit import FittedPotential
+from isotorque.learning.statistics.lack_of_fit import LackOfFit
+from isotorque.symbolic.groups.group_arrays import CandidateGroup, lifted_relations
 
 Array = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.relations.errors_in_variables import MeasurementNoise
-from learning.relations.potential_fit import FittedPotential, quantile
-from learning.relations.silent_joints import fit_on_active_joints
-from learning.statistics.lack_of_fit import LackOfFit, lack_of_fit
-from learning.statistics.poses import group_poses
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.learning.relations.potential.inactive_joints import fit_on_active_joints
+from isotorque.learning.relations.potential.potential_fit import FittedPotential, quantile
+from isotorque.learning.statistics.lack_of_fit import LackOfFit, lack_of_fit
+from isotorque.learning.statistics.poses import group_poses
 
 Array = NDArray[np.float64]
 

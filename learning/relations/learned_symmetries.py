@@ -8,9 +8,10 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.relations.potential_fit import FittedPotential
-from learning.statistics.lack_of_fit import LackOfFit
-from symbolic.relations import SymmetryGroup, SymmetryRelation
+from isotorque.learning.relations.potential.potential_fit import FittedPotential
+from isotorque.learning.statistics.lack_of_fit import LackOfFit
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from learning.sampling.korobov import korobov_generator, korobov_points
-from learning.sampling.sampling_region import SamplingRegion
-from symbolic.errors import InputError
-from symbolic.relations import SymmetryGroup, wrap
+from isotorque.learning.sampling.korobov import korobov_generator, korobov_points
+from isotorque.learning.sampling.sampling_region import SamplingRegion
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 
 Array = NDArray[np.float64]
 Admit = Callable[[Array], NDArray[np.bool_]]

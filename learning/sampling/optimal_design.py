@@ -7,13 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.learners.equivariant_basis import multi_affine_frequencies, potential_basis
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.sample_checks import fitted
-from learning.relations.errors_in_variables import MeasurementNoise, torque_features
-from learning.symmetry_use import GroupArrays, SymmetryCoordinates
-from symbolic.errors import InputError
-from symbolic.trigonometric import TrigonometricPolynomial
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.rigid.equivariant_basis import (
+    multi_affine_frequencies,
+    potential_basis,
+)
+from isotorque.learning.learners.sample_checks import fitted
+from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
+from isotorque.learning.relations.potential.errors_in_variables import (
+    MeasurementNoise,
+    torque_features,
+)
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 
 Array = NDArray[np.float64]
 
@@ -64,7 +72,7 @@ def d_optimal(
         Relations that the potential has, exactly; every sample then counts for its whole orbit.
     candidates : (c, n) array_like
         Configurations that can be visited [rad]: of the BCTS, within limits, stable if the arm
-        has to hold itself (`learning.sampling.lattice.lattice_samples` with ``admit`` makes them).
+        has to hold itself (`lattice_samples` with ``admit`` makes them).
     count : int
         Number of configurations to choose.
     noise : MeasurementNoise, optional

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.arm import Outcome
-from learning.exploration.strategies import GuidedArm
-from learning.sampling.lattice import lattice_samples
-from learning.sampling.sampling_region import SamplingRegion
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
-from symbolic.joint_limits import one_turn
-from symbolic.relations import SymmetryGroup, wrap
+from isotorque.learning.arm import GuidedArm, Outcome
+from isotorque.learning.sampling.lattice import lattice_samples
+from isotorque.learning.sampling.sampling_region import SamplingRegion
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.joint_limits import one_turn
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 
 Array = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.symmetry_use import averaged_isometry
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
+from isotorque.learning.learners.symmetry_coordinates import averaged_isometry
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError
 
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 MAX_DIMENSION = 3

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import KDTree
 
-from learning.static_torques.alpha_shape import MAX_DIMENSION, AlphaShape
-from learning.static_torques.growing_points import GrowingPoints
-from symbolic.errors import InputError
+from isotorque.learning.static_torques.alpha_shape import MAX_DIMENSION, AlphaShape
+from isotorque.learning.static_torques.incremental_kd_tree import GrowingPoints
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 Cell = tuple[int, ...]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from learning.relations.errors_in_variables import stiffness_matrices
-from learning.relations.potential_fit import FittedPotential
-from symbolic.errors import InputError
+from isotorque.learning.relations.potential.errors_in_variables import stiffness_matrices
+from isotorque.learning.relations.potential.potential_fit import FittedPotential
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,8 @@ def visited_torques(fit: FittedPotential, q: ArrayLike, *, spacing: float = SPAC
 
     Examples
     --------
-    >>> from learning.relations.potential_fit import all_frequencies, fit_potential
+    >>> from isotorque.learning.relations.potential.potential_fit import all_frequencies
+    >>> from isotorque.learning.relations.potential.potential_fit import fit_potential
     >>> samples = np.array([[-2.0], [-1.5], [-1.0], [-0.4]])
     >>> fit = fit_potential(samples, 5.0 * np.cos(samples), all_frequencies(1))
     >>> swing = np.linspace(-1.0, 1.0, 200)[:, None]  # a pendulum swings past the horizontal

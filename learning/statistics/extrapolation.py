@@ -98,7 +98,7 @@ def extrapolation(
 
     Examples
     --------
-    >>> from learning.learners.trigonometric import EquivariantTrigonometric
+    >>> from isotorque import EquivariantTrigonometric
     >>> q = np.linspace(-0.3, 0.3, 12)[:, None]
     >>> arm = EquivariantTrigonometric().fit(q, np.cos(q))
     >>> found = extrapolation(arm, q, np.cos(q), [[-np.pi, np.pi]])

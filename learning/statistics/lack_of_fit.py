@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.relations.potential_fit import FittedPotential, tail_probability
-from learning.statistics.poses import Poses
+from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
+from isotorque.learning.statistics.poses import Poses
 
 Array = NDArray[np.float64]
 
@@ -131,7 +131,8 @@ def lack_of_fit(
 
     Examples
     --------
-    >>> from learning.relations.potential_fit import all_frequencies, fit_potential
+    >>> from isotorque.learning.relations.potential.potential_fit import all_frequencies
+    >>> from isotorque.learning.relations.potential.potential_fit import fit_potential
     >>> rng = np.random.default_rng(0)
     >>> q = rng.uniform(-3.0, 3.0, (40, 2))
     >>> lower = 6.1 * np.cos(q[:, 0] + q[:, 1])

@@ -11,8 +11,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 from scipy.special import rel_entr
 
-from symbolic.errors import InputError
-from symbolic.relations import wrap
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.intp]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from isotorque.parallel import in_processes, on_cluster
-from symbolic.errors import InputError
+from isotorque.symbolic.common.errors import InputError
 
 
 def die_once(mark: str) -> str:

@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from symbolic.gravity import GravityModel
-from symbolic.level_sets import level_set
-from symbolic.relations import SymmetryGroup, wrap
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
-from symbolic.trigonometric import TrigonometricPolynomial
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.level_sets.level_set import level_set
+from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 
 def known_potential(name: str) -> tuple[TrigonometricPolynomial, SymmetryGroup]:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from learning.simulation.simulated_arm import SimulatedArm
-from symbolic.robots import load_robot
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.symbolic.robots.load_robot import load_robot
 
 ROBOT = load_robot("2r")
 ARM = SimulatedArm(ROBOT)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from symbolic.kinematic_tree import KinematicTree
-from symbolic.robots import load_robot
-from verify.strategies import KnownArm
+from isotorque.symbolic.robots.kinematic_tree import KinematicTree
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.verify.testing.strategies import KnownArm
 
 NAMES = ("pendulum", "2r", "3r", "4r-planar")
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from verify.verdict import Status, Verdict, all_passed
+from isotorque.verify.verdict import Status, Verdict, all_passed
 
 
 @pytest.mark.parametrize(

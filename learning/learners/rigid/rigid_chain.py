@@ -9,21 +9,37 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from learning.learners.rigid.acceptance import fit_chain
-from learning.learners.rigid.chain_fit import ChainFit, fit_at
-from learning.learners.rigid.chain_parameters import ChainParameters, checked_parents, serial
-from learning.learners.rigid.chain_samples import ChainSamples, noise_by_joint
-from learning.learners.rigid.chain_search import ChainModel
-from learning.learners.rigid.chain_symmetries import ChainSymmetries, chain_symmetries
-from learning.learners.rigid.gains import GainGroup, gain_groups, with_fixed_scales
-from learning.learners.rigid.joint_columns import offset_columns
-from learning.learners.rigid.snapping import LEVEL, SnappedChain, snapped
-from learning.learners.rigid.standard_errors import TorqueErrors
-from learning.learners.rigid.verdict import NotAccepted, Verdict
-from learning.learners.sample_checks import checked_configurations, checked_samples, fitted, require
-from learning.learners.saved_learner import SavedLearner
-from learning.torque_score import TorqueRegressor
-from symbolic.errors import InputError
+from isotorque.learning.learners.base import SavedLearner
+from isotorque.learning.learners.rigid.fitting.acceptance import fit_chain
+from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit, fit_at
+from isotorque.learning.learners.rigid.fitting.chain_parameters import (
+    ChainParameters,
+    checked_parents,
+    serial,
+)
+from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
+from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
+from isotorque.learning.learners.rigid.fitting.gains import (
+    GainGroup,
+    gain_groups,
+    with_fixed_scales,
+)
+from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
+from isotorque.learning.learners.rigid.fitting.verdict import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
+from isotorque.learning.learners.rigid.structure.chain_symmetries import (
+    ChainSymmetries,
+    chain_symmetries,
+)
+from isotorque.learning.learners.rigid.structure.snapping import LEVEL, SnappedChain, snapped
+from isotorque.learning.learners.sample_checks import (
+    checked_configurations,
+    checked_samples,
+    fitted,
+    require,
+)
+from isotorque.learning.learners.torque_score import TorqueRegressor
+from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 

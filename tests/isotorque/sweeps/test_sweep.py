@@ -7,13 +7,13 @@ from dataclasses import fields
 import pytest
 
 from isotorque.cli.main import status
-from isotorque.runs.run_options import ArmOptions, RunOptions
+from isotorque.runs.options.run_options import ArmOptions, RunOptions
 from isotorque.sweeps import sweep as sweep_module
 from isotorque.sweeps.sweep import COLUMNS, sweep
 from isotorque.sweeps.sweep_table import OPTIONS, read_sweep, told_options
-from symbolic.errors import InputError
-from symbolic.robot_options import RobotOptions
-from symbolic.robots import load_robot
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.robot_options import RobotOptions
+from isotorque.symbolic.robots.load_robot import load_robot
 
 LEARNER = "recursive-least-squares"
 BOTH = f'robots = ["2r"]\nlearners = ["{LEARNER}"]\n'

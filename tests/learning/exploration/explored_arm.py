@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from learning.arm import LimitHit, Settled
-from learning.exploration.strategies import ConstrainedDirectionSampling
-from learning.learners.local_linear_map import LocalLinearMap
+from isotorque.learning.arm import LimitHit, Settled
+from isotorque.learning.exploration.strategies import ConstrainedDirectionSampling
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
 from tests.learning.learners import planar_arm
 
 RANGE = [24.5, 6.2]

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.exploration.exploratory_noise import ExploratoryNoise
-from symbolic.errors import InputError
+from isotorque.learning.exploration.exploratory_noise import ExploratoryNoise
+from isotorque.symbolic.common.errors import InputError
 
 
 @settings(max_examples=20, deadline=None)

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from learning.exploration.static_projection import nearest_admissible
+from isotorque.learning.exploration.static_projection import nearest_admissible
 
 
 class Disc:

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.arm import Settled
-from learning.exploration.explored_share import ExploredShare
-from learning.exploration.strategies import DirectionSampling, ExplorationSettings
-from learning.exploration.targets import Phase
-from symbolic.errors import InputError
+from isotorque.learning.arm import Settled
+from isotorque.learning.exploration.explored_share import ExploredShare
+from isotorque.learning.exploration.strategies import DirectionSampling, ExplorationSettings
+from isotorque.learning.exploration.targets import Phase
+from isotorque.symbolic.common.errors import InputError
 from tests.learning.exploration.explored_arm import (
     Cell,
     Recorder,

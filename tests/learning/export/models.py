@@ -2,17 +2,19 @@
 
 import numpy as np
 
-from learning.learners.dictionary_learner import DictionaryLearner
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.network import FeedForwardNetwork
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
-from learning.learners.rigid.rigid_chain import RigidChain
-from learning.learners.static_regressor import StaticRegressor
-from learning.learners.trigonometric import EquivariantTrigonometric
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
+from isotorque.learning.learners.memory.dictionary_learner import DictionaryLearner
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 QUICK = {"restarts": 1, "iterations": 10, "trial_iterations": 5}
 #: Learners by name: from a robot's name and its group.

@@ -3,10 +3,10 @@ import json
 import numpy as np
 import pytest
 
-from learning.export.array_files import export_bytes, read_export
-from learning.export.from_learner import torque_form
-from learning.export.torque_form import evaluate
-from symbolic.errors import InputError
+from isotorque.learning.export.array_files import export_bytes, read_export
+from isotorque.learning.export.from_learner import torque_form
+from isotorque.learning.export.torque_form import evaluate
+from isotorque.symbolic.common.errors import InputError
 from tests.learning.export.models import MAKERS, far_queries, fitted_learner
 
 

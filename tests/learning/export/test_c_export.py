@@ -1,17 +1,19 @@
 import numpy as np
 import pytest
 
-from learning.export.c_export import c_source
-from learning.export.from_learner import torque_form
-from learning.export.waves import Waves
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.network import FeedForwardNetwork
-from learning.learners.static_regressor import StaticRegressor
-from learning.learners.trigonometric import EquivariantTrigonometric
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.export.c_export import c_source
+from isotorque.learning.export.from_learner import torque_form
+from isotorque.learning.export.waves import Waves
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from tests.learning.export.compiled import build, call, needs_cc, needs_nm, symbols
 from tests.learning.export.models import MAKERS, QUICK, far_queries, fitted_learner, samples
 

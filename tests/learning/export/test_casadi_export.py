@@ -2,9 +2,9 @@ import casadi
 import numpy as np
 import pytest
 
-from learning.export.casadi_export import casadi_function
-from learning.export.from_learner import torque_form
-from learning.learners.local_linear_map import LocalLinearMap
+from isotorque.learning.export.casadi_export import casadi_function
+from isotorque.learning.export.from_learner import torque_form
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
 from tests.learning.export.models import MAKERS, far_queries, fitted_learner, samples
 
 

@@ -4,19 +4,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sklearn.linear_model import LinearRegression
 
-from learning.export.from_learner import torque_form
-from learning.export.torque_form import evaluate, largest_difference
-from learning.export.waves import Waves
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.network import FeedForwardNetwork
-from learning.learners.trigonometric import EquivariantTrigonometric
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.export.from_learner import torque_form
+from isotorque.learning.export.torque_form import evaluate, largest_difference
+from isotorque.learning.export.waves import Waves
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.testing.strategies import known_arms
 from tests.learning.export.models import QUICK, fitted_learner, samples
-from verify.strategies import known_arms
 
 
 @given(arm=known_arms(max_joints=3), seed=st.integers(0, 2**32 - 1))

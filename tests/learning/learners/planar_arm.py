@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from learning.arm import LimitHit, Settled
+from isotorque.learning.arm import LimitHit, Settled
 
 UPPER = 18.39
 LOWER = 6.13

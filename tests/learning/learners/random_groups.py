@@ -3,7 +3,9 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from symbolic.relations import SymmetryRelation, close, wrap
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.groups.symmetry_group import close
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 
 def groups(max_joints=3):

@@ -7,8 +7,8 @@ import pytest
 from sklearn.base import clone
 from sklearn.utils.estimator_checks import check_estimator
 
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
 from tests.learning.learners import planar_arm
 
 NOT_APPLICABLE = {

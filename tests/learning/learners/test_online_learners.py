@@ -7,16 +7,16 @@ import json
 import numpy as np
 import pytest
 
-from learning.arm import OutcomeKind
-from learning.exploration.settings import ExplorationSettings
-from learning.exploration.strategies import ConstrainedDirectionSampling
-from learning.learners.dictionary_learner import DictionaryLearner
-from learning.learners.local_linear_map import LocalLinearMap
-from learning.learners.recursive_least_squares import RecursiveLeastSquares
-from learning.simulation.simulated_arm import SimulatedArm
-from learning.static_torques.static_torque_set import StaticTorqueSet
-from symbolic.errors import InputError
-from symbolic.robots import load_robot
+from isotorque.learning.arm import OutcomeKind
+from isotorque.learning.exploration.settings import ExplorationSettings
+from isotorque.learning.exploration.strategies import ConstrainedDirectionSampling
+from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
+from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
+from isotorque.learning.learners.memory.dictionary_learner import DictionaryLearner
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.learning.static_torques.static_torque_set import StaticTorqueSet
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.learners import planar_arm
 
 GROUP = planar_arm.group()

@@ -10,9 +10,9 @@ import itertools
 import sys
 from pathlib import Path
 
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recording import Recording
-from learning.recordings.run_info import RunInfo
+from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recording import Recording
 from tests.learning.recordings.recording_tools import NAMES, ToyArm, explore
 
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from learning.arm import LimitHit, Outcome, Playback, Settled, TimedOut, Vector
-from learning.recordings.run_info import RunInfo, generator_state
+from isotorque.learning.arm import LimitHit, Outcome, Playback, Settled, TimedOut, Vector
+from isotorque.learning.files.run_info import RunInfo, generator_state
 
 NAMES = ("shoulder", "elbow")
 INFO = RunInfo("toy", "0123abcd", NAMES, seed=1, options={"steps": 40})

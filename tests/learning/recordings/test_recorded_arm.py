@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.arm import OutcomeKind
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recording import Recording
-from learning.recordings.recording_error import RecordingError
-from learning.recordings.recording_reader import RecordingReader
-from learning.recordings.run_info import RunInfo
+from isotorque.learning.arm import OutcomeKind
+from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_reader import RecordingReader
 from tests.learning.recordings.recording_tools import INFO, ToyArm, explore, files, tables
 
 COMMANDS = st.lists(st.sampled_from(["apply", "apply", "apply", "play", "home"]), max_size=25)

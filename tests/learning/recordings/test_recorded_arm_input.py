@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from learning.arm import Arm, ProfileArm, Settled
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recording import Recording
-from learning.recordings.recording_error import RecordingError
-from learning.recordings.recording_reader import RecordingReader
-from symbolic.errors import InputError
+from isotorque.learning.arm import Arm, ProfileArm, Settled
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_reader import RecordingReader
+from isotorque.symbolic.common.errors import InputError
 from tests.learning.recordings.recording_tools import INFO, ToyArm
 
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays, scalar_dtypes
 
-from learning.recordings.recorded_checkpoint import pack_arrays, unpack_arrays
-from symbolic.errors import InputError
+from isotorque.learning.recordings.recorded_checkpoint import pack_arrays, unpack_arrays
+from isotorque.symbolic.common.errors import InputError
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_characters="\x00"), min_size=1, max_size=8)
 

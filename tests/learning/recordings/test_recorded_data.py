@@ -5,13 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from learning.recordings.csv_data import StaticSamples, read_csv, write_csv
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recorded_data import record_samples
-from learning.recordings.recording import Recording
-from learning.recordings.recording_error import RecordingError
-from learning.recordings.recording_reader import RecordingReader
-from symbolic.errors import InputError
+from isotorque.learning.files.csv_samples import StaticSamples, read_csv, write_csv
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recorded_data import record_samples
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_reader import RecordingReader
+from isotorque.symbolic.common.errors import InputError
 from tests.learning.recordings.recording_tools import INFO, ToyArm, files
 
 DATA = dataclasses.replace(INFO, part="data", physics="measured", engine="none", seed=None)

@@ -13,12 +13,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.recordings.commit_log import CommitLog
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recording import Recording
-from learning.recordings.recording_error import RecordingError, translated
-from learning.recordings.recording_reader import RecordingReader
-from learning.recordings.run_info import RunInfo
+from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.recordings.commit_log import CommitLog
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.recordings.recording_error import RecordingError, translated
+from isotorque.learning.recordings.recording_reader import RecordingReader
 from tests.learning.recordings.recording_tools import INFO, NAMES, ToyArm, explore, tables
 
 ROOT = Path(__file__).parents[3]
@@ -86,7 +86,7 @@ def test_a_process_that_may_not_write_more(tmp_path, whole):
 def test_a_disk_too_full_for_a_new_file_leaves_nothing_behind(tmp_path):
     script = (
         "import sys; from pathlib import Path\n"
-        "from learning.recordings.recording import Recording\n"
+        "from isotorque.learning.recordings.recording import Recording\n"
         "from tests.learning.recordings.recording_tools import INFO\n"
         "Recording.create(Path(sys.argv[1]), INFO)\n"
     )

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from examples.own_hardware import BenchPendulum, TorqueDrivenArm, main
-from learning.arm import Arm, OutcomeKind
-from learning.recordings.csv_data import read_csv
-from learning.recordings.recording_reader import RecordingReader
+from isotorque.learning.arm import Arm, OutcomeKind
+from isotorque.learning.files.csv_samples import read_csv
+from isotorque.learning.recordings.recording_reader import RecordingReader
 
 
 @pytest.fixture(scope="module")

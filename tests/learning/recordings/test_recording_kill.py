@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from learning.recordings.recording_reader import RecordingReader
+from isotorque.learning.recordings.recording_reader import RecordingReader
 from tests.learning.recordings.recording_tools import files, tables
 
 ROOT = Path(__file__).parents[3]

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from learning.arm import OutcomeKind, Settled
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recorded_command import CommandKind
-from learning.recordings.recording import Recording
-from learning.recordings.recording_error import RecordingError
-from learning.recordings.recording_reader import RecordingReader
+from isotorque.learning.arm import OutcomeKind, Settled
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recorded_command import CommandKind
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_reader import RecordingReader
 from tests.learning.recordings.recording_tools import INFO, ToyArm, explore
 
 ROOT = Path(__file__).parents[3]
@@ -136,7 +136,7 @@ def test_reading_while_writing_sees_every_committed_command(tmp_path):
 def test_another_process_reads_while_this_one_writes(tmp_path):
     path = tmp_path / "run.sqlite"
     script = (
-        "import sys; from learning.recordings.recording_reader import RecordingReader\n"
+        "import sys; from isotorque.learning.recordings.recording_reader import RecordingReader\n"
         "with RecordingReader(sys.argv[1]) as reader:\n"
         "    for line in sys.stdin:\n"
         "        print(reader.parts[0].commands, flush=True)\n"

@@ -12,12 +12,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.recordings.recorded_arm import RecordedArm
-from learning.recordings.recording import Recording
-from learning.recordings.recording_error import RecordingError
-from learning.recordings.recording_reader import RecordingReader
-from learning.recordings.recording_schema import SCHEMA_VERSION
-from symbolic.errors import InputError
+from isotorque.learning.recordings.recorded_arm import RecordedArm
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.recordings.recording_error import RecordingError
+from isotorque.learning.recordings.recording_reader import RecordingReader
+from isotorque.learning.recordings.recording_schema import SCHEMA_VERSION
+from isotorque.symbolic.common.errors import InputError
 from tests.learning.recordings.recording_tools import INFO, ToyArm, explore, files, tables
 
 ROOT = Path(__file__).parents[3]
@@ -78,8 +78,8 @@ def test_the_log_of_a_killed_run_is_left_too(tmp_path):
     path = tmp_path / "run.sqlite"
     script = (
         "import os, sys; from pathlib import Path\n"
-        "from learning.recordings.recorded_arm import RecordedArm\n"
-        "from learning.recordings.recording import Recording\n"
+        "from isotorque.learning.recordings.recorded_arm import RecordedArm\n"
+        "from isotorque.learning.recordings.recording import Recording\n"
         "from tests.learning.recordings.recording_tools import INFO, ToyArm\n"
         "arm = RecordedArm(ToyArm(), Recording.create(Path(sys.argv[1]), INFO))\n"
         "arm.apply([0.5, 0.25]); os._exit(9)\n"
@@ -213,7 +213,7 @@ def test_a_second_writer_in_another_process(tmp_path):
     path = tmp_path / "run.sqlite"
     script = (
         "import sys; from pathlib import Path\n"
-        "from learning.recordings.recording import Recording\n"
+        "from isotorque.learning.recordings.recording import Recording\n"
         "from tests.learning.recordings.recording_tools import INFO\n"
         "Recording.open(Path(sys.argv[1]), INFO)\n"
     )

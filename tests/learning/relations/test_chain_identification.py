@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from learning.relations.chain_identification import identify_by_chain, with_chain
-from learning.relations.errors_in_variables import MeasurementNoise
-from learning.relations.relation_learning import learn_relations
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.relations.chain_identification import identify_by_chain, with_chain
+from isotorque.learning.relations.learn_relations import learn_relations
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 
 def recording(name, count, noise=0.0, seed=0):

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from learning.sampling.korobov import korobov_generator, korobov_points
-from symbolic.errors import InputError
+from isotorque.learning.sampling.korobov import korobov_generator, korobov_points
+from isotorque.symbolic.common.errors import InputError
 
 
 def shortest_by_brute_force(z, count, sides):

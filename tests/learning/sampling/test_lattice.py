@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import pdist
 
-from learning.sampling.lattice import Spread, lattice_samples
-from learning.sampling.sampling_region import SamplingRegion
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.sampling.lattice import Spread, lattice_samples
+from isotorque.learning.sampling.sampling_region import SamplingRegion
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 ROBOTS = ("2r", "3r", "ur5")
 EXACT = [kind for kind in Spread if kind is not Spread.GRID]

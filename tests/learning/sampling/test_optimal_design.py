@@ -5,19 +5,27 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.learners.equivariant_basis import multi_affine_frequencies, potential_basis
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.trigonometric import EquivariantTrigonometric
-from learning.relations.errors_in_variables import MeasurementNoise, torque_features
-from learning.sampling.lattice import lattice_samples
-from learning.sampling.optimal_design import d_optimal, least_variance
-from learning.sampling.sampling_region import SamplingRegion
-from learning.symmetry_use import SymmetryCoordinates
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.rigid.equivariant_basis import (
+    multi_affine_frequencies,
+    potential_basis,
+)
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.symmetry_coordinates import SymmetryCoordinates
+from isotorque.learning.relations.potential.errors_in_variables import (
+    MeasurementNoise,
+    torque_features,
+)
+from isotorque.learning.sampling.lattice import lattice_samples
+from isotorque.learning.sampling.optimal_design import d_optimal, least_variance
+from isotorque.learning.sampling.sampling_region import SamplingRegion
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 
 def arm(name):

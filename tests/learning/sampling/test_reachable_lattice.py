@@ -5,11 +5,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.arm import Settled
-from learning.sampling.reachable_lattice import reachable_lattice, turned_into, visit, within
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
-from symbolic.relations import SymmetryRelation, close
+from isotorque.learning.arm import Settled
+from isotorque.learning.sampling.reachable_lattice import (
+    reachable_lattice,
+    turned_into,
+    visit,
+    within,
+)
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.groups.symmetry_group import close
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 ARM = close(
     [

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from learning.sampling.sampling_region import SamplingRegion
-from symbolic.domain import FundamentalDomain
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
-from symbolic.symmetries import primary_symmetries
+from isotorque.learning.sampling.sampling_region import SamplingRegion
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 
 @pytest.mark.parametrize("robot", ["2r", "3r", "ur5"])

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from learning.static_torques.alpha_shape import AlphaShape
-from symbolic.errors import InputError
+from isotorque.learning.static_torques.alpha_shape import AlphaShape
+from isotorque.symbolic.common.errors import InputError
 
 
 def cloud(rng, count, dimension):

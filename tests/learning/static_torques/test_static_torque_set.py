@@ -3,10 +3,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from learning.exploration.static_projection import nearest_admissible
-from learning.static_torques import static_torque_set
-from learning.static_torques.static_torque_set import StaticTorqueSet
-from symbolic.errors import InputError
+from isotorque.learning.exploration.static_projection import nearest_admissible
+from isotorque.learning.static_torques import static_torque_set
+from isotorque.learning.static_torques.static_torque_set import StaticTorqueSet
+from isotorque.symbolic.common.errors import InputError
 from tests.learning.static_data import known_potential
 
 seeds = st.integers(0, 2**32 - 1)

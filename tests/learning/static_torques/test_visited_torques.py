@@ -3,15 +3,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from learning.relations.potential_fit import all_frequencies, fit_potential
-from learning.scheme import Scheme, SchemeSettings
-from learning.simulation.simulated_arm import SimulatedArm
-from learning.static_torques.visited_torques import visited_torques
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
+from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
+from isotorque.learning.scheme import Scheme, SchemeSettings
+from isotorque.learning.simulator.simulated_arm import SimulatedArm
+from isotorque.learning.static_torques.visited_torques import visited_torques
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.verify.static_torques.judge_static_torques import judge_static_torques
 from tests.learning.static_data import known_potential, stable_samples
-from verify.static_torques import judge_static_torques
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.02, 0.5))

@@ -5,14 +5,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.learners.by_name import BATCH_LEARNERS, LearningTask, learner_by_name
-from learning.learners.gaussian_process import SymmetricGaussianProcess
-from learning.learners.static_regressor import StaticRegressor
-from learning.learners.trigonometric import EquivariantTrigonometric
-from learning.statistics.extrapolation import WILD, extrapolation
-from learning.statistics.shrinkage import shrunk_least_squares
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
+from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
+    SymmetricGaussianProcess,
+)
+from isotorque.learning.learners.registry import BATCH_LEARNERS, LearningTask, learner_by_name
+from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
+from isotorque.learning.statistics.extrapolation import WILD, extrapolation
+from isotorque.learning.statistics.shrinkage import shrunk_least_squares
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
 
 SILENT = 1.5 * WILD
 """Times the largest torque seen that no answer exceeds without a word."""

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.misfit import Cell, data_set, excess, holds, judged
-from learning.relations.candidate_maps import Judgement, judge_candidates
-from learning.relations.errors_in_variables import MeasurementNoise
-from learning.relations.potential_fit import all_frequencies, fit_potential
-from learning.relations.relation_learning import learn_relations
-from learning.statistics.lack_of_fit import lack_of_fit
+from isotorque.learning.relations.learn_relations import learn_relations
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
+from isotorque.learning.relations.testing.judge_candidates import Judgement, judge_candidates
+from isotorque.learning.statistics.lack_of_fit import lack_of_fit
 from tests.learning.static_data import known_potential
 
 seeds = st.integers(0, 2**32 - 1)

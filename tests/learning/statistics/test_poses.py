@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learning.statistics.poses import WIDEST, group_poses
-from symbolic.errors import InputError
+from isotorque.learning.statistics.poses import WIDEST, group_poses
+from isotorque.symbolic.common.errors import InputError
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from learning.learners.rigid.canonical_form import rotation
-from learning.learners.rigid.chain_parameters import ChainParameters
+from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
+from isotorque.learning.learners.rigid.structure.canonical_form import rotation
 
 KINDS = ("random", "right angles", "parallel", "vertical", "few levers")
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from sklearn.base import clone
 
-from learning.learners.rigid.rigid_chain import RigidChain
-from learning.learners.rigid.verdict import NotAccepted, Verdict
-from learning.model_files import SavedModel, load_model, save_model
-from symbolic.errors import InputError
-from symbolic.gravity import GravityModel
-from symbolic.robots import load_robot
+from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
+from isotorque.learning.learners.rigid.fitting.verdict import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.learners.rigid.random_chains import random_poses
 
 NAMES = tuple("abcdefg")
@@ -32,9 +32,9 @@ def test_it_knows_nothing_of_the_robot():
     """Told n and nothing else: no robot in its settings, none reachable by its imports."""
     assert not {"robot", "tree", "urdf"} & set(inspect.signature(RigidChain).parameters)
     script = (
-        "import sys, learning.learners.rigid.rigid_chain as _; "
-        "print([m for m in sys.modules if m in ('pinocchio', 'casadi', 'symbolic.robots', "
-        "'symbolic.gravity', 'symbolic.kinematic_tree')])"
+        "import sys, isotorque.learning.learners.rigid.rigid_chain as _; "
+        "print([m for m in sys.modules if m.startswith(('pinocchio', 'casadi', "
+        "'isotorque.symbolic.robots', 'isotorque.symbolic.gravity'))])"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True)
     assert done.stdout.decode().strip() == "[]"

@@ -1,0 +1,229 @@
+"""Learning from recordings of a real arm: a CSV file of configurations and holding torques."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from isotorque.learning.files.csv_samples import StaticSamples, read_csv
+from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.learners.cross_validation import HeldOut
+from isotorque.learning.learners.registry import LearningTask, check_learner
+from isotorque.learning.recordings.recorded_data import record_samples
+from isotorque.learning.recordings.recording import Recording
+from isotorque.learning.relations.testing.supported_group import SupportedGroup
+from isotorque.learning.statistics.extrapolation import extrapolation
+from isotorque.runs.experiment import Progress
+from isotorque.runs.from_data.data_relations import RelationsOfData
+from isotorque.runs.from_data.data_remarks import analytic_remarks, outlier_remarks
+from isotorque.runs.lattice_learning import fitted_with_curve
+from isotorque.runs.learned_model import LearnedModel
+from isotorque.runs.learning_curve import DenseTest
+from isotorque.runs.options.recorded_robot import as_recorded
+from isotorque.runs.options.robot_copy import keep_robot_file
+from isotorque.runs.options.run_options import check_symmetries
+from isotorque.runs.stages import DATABASE
+from isotorque.single_thread import single_thread
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.common.files import output_directory
+from isotorque.symbolic.common.robot_options import RobotOptions
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.robots.load_robot import Robot, load_robot
+from isotorque.verify.models.measured_torques import Disagreement, disagreement
+
+Array = NDArray[np.float64]
+
+MANY_ROWS = 1000
+"""More samples than these are too many for a Gaussian process by default."""
+WORST = 10
+"""Outliers that are named."""
+STAGE = "learning from data"
+
+
+@dataclass(frozen=True)
+class DataOptions:
+    """How to learn from a recording.
+
+    Attributes
+    ----------
+    robot : RobotOptions
+        Built-in name or file of the arm; the data are judged against it. A name alone will do.
+    file : Path
+        The CSV file, see ``read_csv``.
+    learner : str or None
+        Name of the learner; None: a Gaussian process, beyond ``MANY_ROWS`` rows a network.
+    symmetries : str
+        ``learned`` from the data, ``exact`` or ``none``.
+    drop_outliers : bool
+        Whether the model leaves out rows that do not fit the others.
+    seed : int
+        Seed of all random choices.
+    """
+
+    robot: RobotOptions
+    file: Path
+    learner: str | None = None
+    symmetries: str = "learned"
+    drop_outliers: bool = False
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "robot", RobotOptions.of(self.robot))
+        check_symmetries(self.symmetries)
+        if self.learner is not None:
+            check_learner(self.learner)
+
+    def task(self, samples: StaticSamples, robot: Robot) -> LearningTask:
+        """Return what learners are told beforehand."""
+        rows, joints = samples.q.shape
+        width = robot.limits[:, 1] - robot.limits[:, 0]
+        turning = tuple((np.abs(width - 2.0 * np.pi) < 1e-9).tolist())  # no limits in the file
+        return LearningTask(joints, rows, True, self.robot, self.seed, turning)
+
+
+@single_thread()
+def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> LearnedModel:
+    """Learn relations and a model from a recording, and say how far it can be trusted.
+
+    Parameters
+    ----------
+    options
+        What to learn.
+    out
+        Directory; the samples are recorded in ``run.sqlite`` there, in a part of their own.
+    progress
+        Called as ``progress(stage, done, total, note)``.
+
+    Returns
+    -------
+    LearnedModel
+        ``details`` hold outliers, errors on held out poses, and the disagreement with the analytic
+        gravity of the robot.
+
+    Raises
+    ------
+    InputError
+        For a file, robot or options that cannot be used, and for a directory that holds samples of
+        another file.
+    """
+    robot = load_robot(as_recorded(options.robot, out))
+    options = replace(options, robot=robot.options)
+    samples = read_csv(options.file, robot.joint_names)
+    gravity = GravityModel(robot)
+    _record(robot, samples, output_directory(out))
+    keep_robot_file(options.robot, out)
+    name = options.learner or ("gaussian-process" if len(samples.q) <= MANY_ROWS else "network")
+    task = options.task(samples, robot)
+
+    stages = iter(range(4))
+    found = RelationsOfData(samples, name, task).find(
+        options.symmetries, gravity, lambda note: progress(STAGE, next(stages), 3, note)
+    )
+    group, tried = found.group, found.tried
+    everything = np.zeros(len(samples.q), dtype=bool)
+    unfit = everything if tried is None else tried.outliers
+    progress(STAGE, next(stages), 3, "model")
+    used = ~unfit if options.drop_outliers else ~everything
+    order = np.random.default_rng(options.seed).permutation(np.flatnonzero(used))
+    learner, curve = fitted_with_curve(
+        name, task, group, samples.q[order], samples.tau[order], DenseTest(robot, gravity)
+    )
+    progress(STAGE, next(stages), 3, "")
+    compared = disagreement(samples.q, samples.tau, gravity, leave_out=unfit)
+    copies = [samples.q[order]]
+    if group is not None:
+        copies = [wrap(relation.configuration(samples.q[order])) for relation in group]
+    beyond = extrapolation(learner, np.concatenate(copies), samples.tau[order], robot.limits)
+    return LearnedModel(
+        robot,
+        gravity,
+        learner,
+        {
+            "strategy": "data",
+            "learner": name,
+            "symmetries": options.symmetries,
+            "extrapolation": beyond.document(),
+        },
+        len(order),
+        0,
+        1 if group is None else group.order,
+        curve,
+        (
+            *found.remarks,
+            *([beyond.remark] if beyond.remark else []),
+            *outlier_remarks(tried, options.drop_outliers, WORST),
+            *analytic_remarks(compared, tried, samples, robot),
+        ),
+        {
+            "data": {
+                "file": str(options.file),
+                "rows": len(samples.q),
+                "outliers": _outliers(tried),
+                "symmetry_test": _symmetry_test(found.test),
+                "held_out": _held_out(tried),
+                "analytic": _analytic(compared),
+            }
+        },
+    )
+
+
+def _record(robot: Robot, samples: StaticSamples, out: Path) -> None:
+    part = robot.options.as_json()
+    info = RunInfo(
+        robot.name, robot.digest, robot.joint_names, "measured", "elsewhere",
+        options={"robot": part} if part else {}, part="data",
+    )  # fmt: skip
+    with Recording.open_or_create(out / DATABASE, info) as recording:
+        record_samples(recording, samples)
+        recording.finish()
+
+
+def _outliers(tried: HeldOut | None) -> dict[str, Any] | None:
+    if tried is None:
+        return None
+    worst = tried.worst(WORST)
+    return {
+        "count": int(tried.outliers.sum()),
+        "worst_rows": worst + 1,
+        "errors": tried.errors[worst],
+    }
+
+
+def _symmetry_test(test: SupportedGroup | None) -> dict[str, Any] | None:
+    if test is None:
+        return None
+    return {
+        "relations": len(test.tested) + 1,
+        "contradicted": len(test.contradicted),
+        "kept": test.group.order,
+        "testable": test.testable,
+        "p_value": test.p_value,
+    }
+
+
+def _held_out(tried: HeldOut | None) -> dict[str, Any] | None:
+    if tried is None:
+        return None
+    return {
+        "folds": tried.folds,
+        "poses": tried.poses.count,
+        "rmse": tried.rmse,
+        "rmse_by_joint": tried.rmse_by_joint,
+        "rmse_without_outliers": tried.rmse_of_others,
+    }
+
+
+def _analytic(compared: Disagreement) -> dict[str, Any]:
+    return {
+        "rows": compared.rows,
+        "rmse": compared.rmse,
+        "rmse_by_joint": compared.rmse_by_joint,
+        "mean_by_joint": compared.mean_by_joint,
+        "share": compared.share,
+        "largest": compared.largest,
+        "largest_row": compared.row + 1,
+    }

@@ -1,0 +1,75 @@
+"""What is said in words about a recording: outliers, and how it disagrees with the robot file."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isotorque.learning.files.csv_samples import StaticSamples
+from isotorque.learning.learners.cross_validation import HeldOut
+from isotorque.symbolic.robots.load_robot import Robot
+from isotorque.verify.models.measured_torques import Disagreement
+
+SYSTEMATIC = 2.0
+"""Times the held-out error from which a disagreement is no accident of single samples."""
+MUCH_BETTER = 3.0
+"""Times that another sign or unit must fit better to be suspected."""
+
+
+def outlier_remarks(tried: HeldOut | None, dropped: bool, count: int) -> tuple[str, ...]:
+    """Say what held out rows tell: the error, and which rows do not fit the others."""
+    if tried is None:
+        return ("one pose only: no error on held out rows",)
+    words = f"error on held out rows {tried.rmse:.4g} N m ({tried.folds}-fold cross-validation"
+    words += f" by pose: {tried.poses.count} poses)" if tried.poses.repeated else ")"
+    if not tried.outliers.any():
+        return (f"{words}; no outliers",)
+    rows = ", ".join(str(i + 1) for i in tried.worst(count))
+    found = int(tried.outliers.sum())
+    more = " ..." if found > count else ""
+    kept = "left out of the model" if dropped else "kept; --drop-outliers leaves them out"
+    return (
+        f"{words}, {tried.rmse_of_others:.4g} N m without outliers",
+        f"{found} outliers (row 1 is the first below the header): {rows}{more}; {kept}",
+    )
+
+
+def analytic_remarks(
+    compared: Disagreement, tried: HeldOut | None, samples: StaticSamples, robot: Robot
+) -> tuple[str, ...]:
+    """Say how the data disagree with the analytic gravity of the robot file."""
+    joints = ", ".join(
+        f"{name} {rmse:.3g} (mean {mean:+.3g})"
+        for name, rmse, mean in zip(
+            robot.joint_names, compared.rmse_by_joint, compared.mean_by_joint, strict=True
+        )
+    )
+    data = f"data ({compared.rows} rows)"
+    said = (
+        f"{data} less analytic gravity of {robot.name}: {compared.rmse:.4g} N m RMSE, "
+        f"{100 * compared.share:.3g} % of the torques; {joints}; at most "
+        f"{compared.largest:.4g} N m (row {compared.row + 1})"
+    )
+    if tried is not None and tried.rmse_of_others > 0:
+        times = compared.rmse / tried.rmse_of_others
+        if times > SYSTEMATIC:
+            said += f"; {times:.3g} times the error on held out rows: systematic"
+    remarks = [said]
+    if MUCH_BETTER * compared.rmse_opposite < compared.rmse:
+        remarks.append(
+            f"with the opposite sign of all torques that would be {compared.rmse_opposite:.4g} N m:"
+            " tau is the torque that holds the arm, not the one that gravity exerts"
+        )
+    elif MUCH_BETTER * compared.rmse_degrees < compared.rmse:
+        remarks.append(
+            f"with angles in degrees that would be {compared.rmse_degrees:.4g} N m: q is in radians"
+        )
+    far = _outside(samples, robot)
+    if far:
+        remarks.append(f"{far} rows lie outside the joint limits of {robot.name}")
+    return tuple(remarks)
+
+
+def _outside(samples: StaticSamples, robot: Robot) -> int:
+    low, high = robot.limits.T
+    outside = (samples.q < low - 1e-6) | (samples.q > high + 1e-6)
+    return int(np.count_nonzero(outside.any(axis=1)))

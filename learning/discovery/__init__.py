@@ -1,0 +1,1 @@
+"""Discovery: motor babbling and torque profiles (Algorithm 1)."""

@@ -1,0 +1,122 @@
+"""Motor babbling: which torques the arm can hold, knowing nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from isotorque.learning.arm import Outcome, OutcomeKind, ProfileArm
+from isotorque.learning.discovery.home_torque import Search, find_home_torque
+from isotorque.learning.discovery.torque_profile_discovery import _Begun
+from isotorque.symbolic.common.angles import wrap
+
+Array = NDArray[np.float64]
+
+SMALLEST_TORQUE = 1e-3
+"""First torque tried at every joint [N m]."""
+
+VISIBLE_MOTION = 0.1
+"""A joint that has moved this far has shown its torque scale [rad]."""
+
+MOST_DOUBLINGS = 40
+
+TRIES_PER_RAY = 8
+
+
+def babble(
+    arm: ProfileArm,
+    rng: np.random.Generator,
+    tries: int,
+    search: Callable[[ProfileArm], Search] = find_home_torque,
+) -> Generator[Outcome, None, Array | None]:
+    """Find out which torques the arm can hold, knowing nothing: yield every outcome.
+
+    Parameters
+    ----------
+    arm
+        Any arm, at home.
+    rng
+        Source of randomness.
+    tries
+        Torques applied after the scale of each joint has been found.
+    search
+        Finds the home torque of an arm that does not rest under a minute torque.
+
+    Yields
+    ------
+    Outcome
+        Settled or inadmissible, in order.
+
+    Returns
+    -------
+    (n,) array or None
+        The home torque [N m], about which all others lie: zero for an arm that hangs at home.
+        None where ``search`` found none; nothing more is tried then.
+
+    Notes
+    -----
+    Joint by joint, a minute torque is added to the home torque and doubled until the arm visibly
+    moves: that is the scale. A joint that does not come to rest even under the minute torque has
+    no stiffness (a vertical first axis) and is driven no further. Then random rays from the home
+    torque are followed, each to where the arm gives way: in growing steps, then by bisection. So
+    the set of static torques becomes known up to its boundary.
+    """
+    n = len(arm.q)
+    size, centre = np.zeros(n), np.zeros(n)
+    home, first = np.array(arm.q), arm.apply(SMALLEST_TORQUE * np.eye(n)[0])
+    yield first
+    begun: _Begun | None = (home, first)
+    if first.kind is not OutcomeKind.SETTLED:
+        found = yield from search(arm)
+        if found is None:
+            return None
+        centre, begun = found, None
+        arm.go_home()
+    for joint in range(n):
+        yield from _find_scale(arm, joint, centre, size, begun)
+        begun = None
+    left = tries
+    while left > 0 and size.any():
+        direction = rng.normal(size=n)
+        direction *= size / np.abs(direction).max()
+        held, failed, share = 0.0, np.inf, 1.0
+        for _ in range(min(left, TRIES_PER_RAY)):
+            outcome = arm.apply(centre + share * direction)
+            yield outcome
+            left -= 1
+            if outcome.kind is OutcomeKind.SETTLED:
+                held = share
+                size = np.maximum(size, np.abs(outcome.torque - centre))
+            else:
+                failed = share
+            if failed - held < 0.05 * held:
+                break
+            share = 1.5 * held if np.isinf(failed) else 0.5 * (held + failed)
+    return centre
+
+
+def _find_scale(
+    arm: ProfileArm, joint: int, centre: Array, size: Array, begun: _Begun | None
+) -> Iterator[Outcome]:
+    """Set ``size[joint]`` to a torque that visibly moves the joint; leave 0 where none holds.
+
+    ``begun``: where the minute torque was applied already, and what it led to.
+    """
+    torque = np.zeros(len(size))
+    torque[joint] = SMALLEST_TORQUE
+    for _ in range(MOST_DOUBLINGS):
+        if begun is None:
+            before = np.array(arm.q, dtype=float)
+            outcome = arm.apply(centre + torque)
+            yield outcome
+        else:
+            (before, outcome), begun = begun, None
+        if outcome.kind is not OutcomeKind.SETTLED or outcome.torque[joint] == centre[joint]:
+            break
+        size[joint] = torque[joint]
+        if abs(float(wrap(outcome.q - before)[joint])) > VISIBLE_MOTION:
+            break
+        torque *= 2
+    arm.go_home()

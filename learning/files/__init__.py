@@ -1,0 +1,1 @@
+"""Files of the learner: saved models, samples as CSV, software versions."""

@@ -1,0 +1,17 @@
+"""Versions of the software that made a result."""
+
+from __future__ import annotations
+
+import platform
+from importlib import metadata
+
+
+def software_versions() -> dict[str, str]:
+    """Versions that decide the digits of a result; ``"absent"`` for what is not installed."""
+    versions = {"python": platform.python_version()}
+    for name in ("numpy", "pin", "numba", "isotorque"):
+        try:
+            versions[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            versions[name] = "absent"
+    return versions

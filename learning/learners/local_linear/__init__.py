@@ -1,0 +1,1 @@
+"""Local linear maps and what they are made of."""

@@ -1,0 +1,1 @@
+"""Feed-forward networks with one hidden layer."""

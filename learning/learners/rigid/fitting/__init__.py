@@ -1,0 +1,1 @@
+"""Fit of a rigid chain to samples: search, refinement, acceptance."""

@@ -1,0 +1,242 @@
+"""Parametric identification: least squares on Pinocchio's torque regressor at rest."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+from scipy.linalg import lstsq
+
+from isotorque.learning.learners.base import SavedLearner
+from isotorque.learning.learners.sample_checks import (
+    checked_configurations,
+    checked_samples,
+    fitted,
+    require,
+)
+from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
+from isotorque.learning.learners.torque_score import TorqueRegressor
+from isotorque.learning.statistics.shrinkage import shrunk_least_squares
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.robot_options import RobotOptions
+from isotorque.symbolic.robots.load_robot import STANDARD_INPUT, Robot, load_robot
+
+Array = NDArray[np.float64]
+
+
+class StaticRegressor(TorqueRegressor, SavedLearner):
+    """Masses and first moments of an arm whose kinematics is known.
+
+    Parameters
+    ----------
+    robot : Robot, RobotOptions, str or None
+        The arm, a built-in name or a file, with options if wanted; its masses are not looked at,
+        only its kinematics and gravity. A model can be saved only if it was given as a name or
+        file.
+    snap : bool
+        Whether rounded angles are snapped in a file that is given by its name alone.
+    ridge : float
+        Penalty on the squares of the parameters (mass [kg], first moments [kg m]); 0: as much as
+        the residuals and the size of the torques call for, and the smallest parameters where the
+        samples leave some open (most always are: only the base parameters matter for torques).
+    group : SymmetryGroup or None
+        Relations to exploit: every sample is fitted with all its symmetric copies, which settles
+        parameters that the samples leave open. Needed rarely.
+
+    Attributes
+    ----------
+    parameters_ : (4 n,) array
+        For every joint's body: mass [kg] and mass times centre of mass in the joint's frame
+        [kg m]. Physical only as far as identifiable.
+    rank_ : int
+        Number of combinations of parameters that the samples determine.
+
+    Notes
+    -----
+    What a user with a URDF whose inertias are not trusted would do, hence the strongest
+    competitor: torques are linear in at most 4 n parameters, so a handful of samples gives the
+    exact torque of a rigid arm. Prefer it whenever the kinematics is known and the arm is rigid.
+    It is wrong where lengths or angles are; the learners that know nothing about the arm are not.
+
+    The regressor is Pinocchio's ``computeJointTorqueRegressor`` without velocity and acceleration:
+    of each body's ten columns the first four, mass and first moments. (``computeStaticRegressor``
+    is another thing: it gives the arm's centre of mass, three rows, not the torques.)
+
+    References
+    ----------
+    W. Khalil, E. Dombre, "Modeling, Identification and Control of Robots", 2002, chapter 12.
+
+    Examples
+    --------
+    >>> q = np.array([[0.3, -1.0], [1.1, 0.4]])
+    >>> lower = 6.131 * np.cos(q.sum(axis=1))
+    >>> torque = np.stack([18.394 * np.cos(q[:, 0]) + lower, lower], axis=1)
+    >>> arm = StaticRegressor("2r").fit(q, torque)
+    >>> bool(np.abs(arm.predict([[0.0, 0.0]]) - [24.525, 6.131]).max() < 1e-9), arm.rank_
+    (True, 4)
+    """
+
+    def __init__(
+        self,
+        robot: Robot | RobotOptions | str | None = None,
+        *,
+        snap: bool = True,
+        ridge: float = 0.0,
+        group: GroupArrays | None = None,
+    ) -> None:
+        self.robot = robot
+        self.snap = snap
+        self.ridge = ridge
+        self.group = group
+
+    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> StaticRegressor:
+        """Fit to samples, forgetting what was before.
+
+        Parameters
+        ----------
+        X : (m, n) array_like
+            Configurations [rad].
+        y : (m, n) array_like
+            Torques that hold them [N m].
+        sample_weight : (m,) array_like, optional
+            Weights of the squared errors.
+
+        Returns
+        -------
+        StaticRegressor
+            Itself.
+
+        Raises
+        ------
+        InputError
+            If a number is NaN or infinite, there is no robot, or it has another number of joints.
+        """
+        self._check_parameters()
+        q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
+        self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
+        self.n_samples_seen_ = len(q)
+        q, torque, weights = self._with_copies(q, torque, weights)
+        root = np.sqrt(weights)[:, None]
+        features = (self._regressors(q) * root[:, :, None]).reshape(torque.size, -1)
+        targets = (torque * root).ravel()
+        self._root = None
+        if self.ridge:
+            features = np.vstack([features, np.sqrt(self.ridge) * np.eye(features.shape[1])])
+            targets = np.append(targets, np.zeros(features.shape[1]))
+            self.parameters_, _, self.rank_, _ = lstsq(features, targets, cond=1e-11)
+            return self
+        self.rank_ = int(np.linalg.matrix_rank(features, rtol=1e-11))
+        gravity = max(float(np.linalg.norm(self._model.gravity.linear)), 1e-300)
+        largest = float(np.abs(targets).max(initial=0.0)) / gravity
+        self.parameters_, self._root = shrunk_least_squares(features, targets, largest)
+        return self
+
+    def standard_error(self, X: Any) -> Array | None:
+        """Standard errors (m, n) [N m] of ``predict``, as far as the residuals tell.
+
+        None for a loaded model, and where ``ridge`` was given.
+        """
+        fitted(self)
+        root: Array | None = getattr(self, "_root", None)
+        if root is None:
+            return None
+        q = checked_configurations(self, X, first=False)
+        return np.asarray(np.linalg.norm(self._regressors(q) @ root, axis=2))
+
+    def predict(self, X: Any) -> Array:
+        """Torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
+        fitted(self)
+        q = checked_configurations(self, X, first=False)
+        result = self._regressors(q) @ self.parameters_
+        return result[:, 0] if self._flat else result
+
+    def _with_copies(self, q: Array, torque: Array, weights: Array) -> tuple[Array, Array, Array]:
+        """Samples and their symmetric copies, moved in q no more than B q says."""
+        if self.group is None:
+            return q, torque, weights
+        copies, torques = self._coordinates.copies(q, torque)
+        basis = self._coordinates.basis
+        moved = q + (copies - q @ basis.T) @ np.linalg.pinv(basis).T
+        n = q.shape[1]
+        return moved.reshape(-1, n), torques.reshape(-1, n), np.tile(weights, len(copies))
+
+    def _regressors(self, q: Array) -> Array:
+        """Derivatives of the torques by the parameters, (m, n, 4 n)."""
+        data, rest = self._model.createData(), np.zeros(self._model.nv)
+        columns = np.arange(10 * (self._model.njoints - 1)).reshape(-1, 10)[:, :4].ravel()
+        result = np.empty((len(q), self._model.nv, len(columns)))
+        for row, configuration in zip(result, q, strict=True):
+            whole = pin.computeJointTorqueRegressor(self._model, data, configuration, rest, rest)
+            row[:] = np.reshape(whole, (self._model.nv, -1))[:, columns]  # one joint: a vector
+        return result
+
+    def _arrays(self) -> dict[str, NDArray]:
+        found = "a loaded one" if isinstance(self.robot, Robot) else None
+        if getattr(self.robot, "spec", self.robot) == STANDARD_INPUT:
+            found = "standard input"
+        if found is not None:
+            raise InputError("StaticRegressor", "robot", found, "a name or file, to be saved")
+        return {"parameters": self.parameters_.copy()}
+
+    def parameters(self) -> dict[str, Any]:
+        """Settings and counters as plain data; the options of the robot as in a recording."""
+        saved = super().parameters()
+        robot = self.robot
+        if isinstance(robot, RobotOptions):
+            saved["settings"] |= {"robot": robot.spec}
+            if robot.changed:
+                saved["settings"] |= {"robot": [robot.spec, robot.as_json()]}
+        return saved
+
+    @classmethod
+    def from_arrays(
+        cls, arrays: Mapping[str, NDArray], parameters: Mapping[str, Any]
+    ) -> StaticRegressor:
+        """The learner that was saved."""
+        settings = dict(parameters["settings"])
+        if isinstance(settings.get("robot"), list):
+            spec, options = settings["robot"]
+            settings["robot"] = RobotOptions.from_json(spec, options, "saved model")
+        return super().from_arrays(arrays, {**parameters, "settings": settings})
+
+    def _counters(self) -> dict[str, Any]:
+        return {"rank": int(self.rank_), "kinematics": self._kinematics}
+
+    def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
+        if state["kinematics"] != self._kinematics:
+            name = getattr(self.robot, "name", str(self.robot))
+            raise InputError(
+                "saved model", "robot", f"{name}, of other kinematics", "the arm it was fitted to"
+            )
+        self.parameters_, self.rank_ = arrays["parameters"], int(state["rank"])
+
+    def _check_parameters(self) -> None:
+        require(self, "robot", self.robot is not None, "a robot, a built-in name or a file")
+        require(self, "ridge", 0 <= self.ridge < np.inf, "a number >= 0")
+
+    def _start(self, joints: int, outputs: int, flat: bool) -> None:
+        """Empty state for ``joints`` inputs and ``outputs`` outputs."""
+        robot = self.robot
+        if not isinstance(robot, Robot):
+            named = isinstance(robot, RobotOptions)
+            robot = load_robot(robot if named else RobotOptions(str(robot), self.snap))
+        for field, number in (("X", joints), ("y", outputs)):
+            if number != robot.n:
+                raise InputError(field, "number of columns", number, f"{robot.n}, as the robot")
+        self._coordinates = SymmetryCoordinates.of(self.group, joints)
+        self._model, self._kinematics = robot.model, _kinematics(robot)
+        self._flat = flat
+        self.n_outputs_ = outputs
+        self.n_samples_seen_ = 0
+
+
+def _kinematics(robot: Robot) -> str:
+    """Identity of all that the regressor depends on: everything but the inertias."""
+    tree = robot.tree
+    arrays = (tree.parents, tree.rotations, tree.translations, tree.axes, tree.gravity)
+    packed = b"".join(np.ascontiguousarray(a, dtype="<f8").tobytes() for a in arrays)
+    return hashlib.sha256(packed).hexdigest()

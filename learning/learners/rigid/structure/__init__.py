@@ -1,0 +1,1 @@
+"""Structure of a fitted rigid chain: canonical form, snapping, expansion, symmetries."""

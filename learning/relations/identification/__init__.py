@@ -1,0 +1,1 @@
+"""Symmetries identified by fitting one potential."""

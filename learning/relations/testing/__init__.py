@@ -1,0 +1,1 @@
+"""Tests of candidate relations against samples."""

@@ -1,0 +1,1 @@
+"""The ground room: errors, angles, array types, strict JSON, whole-or-nothing file writing."""

@@ -1,0 +1,70 @@
+"""Functions compiled by numba, wherever their machine code may be kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from numba import config, njit
+
+from isotorque.symbolic.common.cache_folders import can_write, user_cache
+
+
+def compiled(function: Callable[..., Any] | None = None, /, **options: Any) -> Any:
+    """Compile a function with numba when it is first called, and keep the result on disk.
+
+    Parameters
+    ----------
+    function
+        A function of a module; without one, a decorator is returned.
+    **options
+        As ``numba.njit`` takes them.
+
+    Returns
+    -------
+    numba dispatcher
+        The compiled function.
+
+    Notes
+    -----
+    The result is kept in ``$NUMBA_CACHE_DIR``, beside the source, or in the cache of the user,
+    whichever can be written first, and nowhere if none can: then it is compiled in each process.
+
+    Examples
+    --------
+    >>> import isotorque.symbolic.gravity.recursion as module
+    >>> folder = cache_folder(Path(module.__file__).parent)
+    >>> folder is None or folder.is_dir()
+    True
+    """
+    if function is None:
+        return lambda f: compiled(f, **options)
+    with cache_in(cache_folder(source_folder(function))) as kept:
+        return njit(cache=kept, **options)(function)
+
+
+def source_folder(function: Callable[..., Any]) -> Path:
+    """Return the folder of the file that a function stands in."""
+    return Path(function.__code__.co_filename).resolve().parent
+
+
+def cache_folder(beside: Path) -> Path | None:
+    """Return the folder to keep compiled functions of a source folder in; None if there is none."""
+    given = [Path(config.CACHE_DIR).absolute()] if config.CACHE_DIR else []
+    for folder in (*given, beside / "__pycache__"):
+        if can_write(folder):
+            return folder
+    return user_cache()
+
+
+@contextmanager
+def cache_in(folder: Path | None) -> Iterator[bool]:
+    """Let numba keep what is decorated inside in a folder; yield whether there is one."""
+    before = config.CACHE_DIR
+    config.CACHE_DIR = "" if folder is None else str(folder)
+    try:
+        yield folder is not None
+    finally:
+        config.CACHE_DIR = before

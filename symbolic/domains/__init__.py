@@ -1,0 +1,1 @@
+"""Fundamental domains of symmetry groups (BCTS)."""

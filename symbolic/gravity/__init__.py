@@ -1,0 +1,1 @@
+"""Gravity: exact potential, torque, stiffness, and their forms for programs and people."""

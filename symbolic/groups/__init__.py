@@ -1,0 +1,1 @@
+"""Symmetry relations and the finite groups that they form."""

@@ -1,0 +1,1 @@
+"""Integer lattices: normal forms, short vectors, Voronoi polytopes."""

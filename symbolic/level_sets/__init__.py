@@ -1,0 +1,1 @@
+"""Level sets of the torque: all configurations of one absolute torque."""

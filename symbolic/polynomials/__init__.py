@@ -1,0 +1,1 @@
+"""Trigonometric polynomials in the joint angles."""

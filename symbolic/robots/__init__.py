@@ -1,0 +1,1 @@
+"""Robots: files, kinematic tree, snapping of rounded angles."""

@@ -1,0 +1,1 @@
+"""Symmetries of a potential: exact, approximate, with proofs and bounds."""

@@ -1,0 +1,134 @@
+"""The whole scheme: from robot to report, resumed, and on another robot."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from isotorque.cli.main import status
+from isotorque.runs.experiment import run_experiment
+from isotorque.runs.options.run_options import ArmOptions, RunOptions
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.robots.load_robot import load_robot
+
+# so few samples teach the paper's learner little: this is about the report, not about the model
+RUN = ["run", "2r", "--samples", "150", "--tolerance", "30", "--quiet"]
+
+
+def quiet(*_):
+    pass
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    out = tmp_path_factory.mktemp("run")
+    assert status([*RUN, "--out", str(out)]) == 0
+    return out
+
+
+def test_the_report_holds_what_was_learned_and_judged(report):
+    document = json.loads((report / "report.json").read_text())
+    page = (report / "report.html").read_text()
+    assert "<svg" in page
+    assert document["passed"]
+    assert document["setup"]["robot"] == "2r"
+    assert len(document["symmetry"]["relations"]) == 8
+    assert document["symmetry"]["found"] == 8
+    assert document["symmetry"]["false"] == 0
+    assert document["exploration"]["commands"] == 150
+    samples = document["curves"][0]["samples"]
+    assert samples[-1] == 150
+    assert document["curves"][0]["rmse"][-1] == pytest.approx(
+        document["model"]["targets"][0]["rmse"]
+    )
+    assert document["level_sets"]["complete"]
+    assert len(document["level_sets"]["q"]) in (8, 16)
+    q = np.array(document["level_sets"]["q"])
+    torque = np.stack(
+        [18.39375 * np.cos(q[:, 0]) + 6.13125 * np.cos(q.sum(1)), 6.13125 * np.cos(q.sum(1))], 1
+    )
+    np.testing.assert_allclose(np.abs(torque), [np.abs(document["level_sets"]["torque"])] * len(q))
+
+
+def test_the_same_command_resumes_and_changes_nothing(report, tmp_path):
+    again = tmp_path / "again"
+    shutil.copytree(report, again)
+    assert status([*RUN, "--out", str(again)]) == 0
+    first, second = (json.loads((d / "report.json").read_text()) for d in (report, again))
+    for document in (first, second):
+        document["totals"].pop("seconds")
+        for stage in document["stages"]:
+            stage.pop("seconds")
+    assert first == second
+
+
+def test_other_options_in_the_same_directory_are_refused(report, capsys):
+    code = status(["run", "2r", "--out", str(report), "--samples", "151", "--quiet"])
+    assert code == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert "151" in message or "150" in message
+
+
+def test_every_number_follows_the_robot(tmp_path):
+    robot = load_robot("2r")
+    text = (robot_file := tmp_path / "heavy.urdf") and _heavier_2r()
+    robot_file.write_text(text)
+    heavy = run_experiment(RunOptions(str(robot_file), samples=60), _made(tmp_path / "a"), quiet)
+    light = run_experiment(RunOptions("2r", samples=60), _made(tmp_path / "b"), quiet)
+    ratio = heavy.scheme.torque_range / light.scheme.torque_range
+    np.testing.assert_allclose(ratio, 2, rtol=0.2)
+    assert heavy.scheme.learned.order == 8
+    assert heavy.robot.digest != robot.digest
+
+
+def _heavier_2r():
+    from importlib.resources import files
+
+    text = files("isotorque.symbolic").joinpath("robot_files/2r.urdf").read_text()
+    assert text.count('<mass value="5') == 2
+    return text.replace('<mass value="5', '<mass value="10')
+
+
+def _made(path):
+    path.mkdir()
+    return path
+
+
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"symmetries": "some"}, "learned, exact or none"),
+        ({"samples": 0}, "--samples"),
+        ({"n_min": 0}, "--n-min"),
+        ({"learner": "parrot"}, "parrot"),
+        ({"arm": ArmOptions(physics="magic")}, "open_loop"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(changes, word, tmp_path):
+    with pytest.raises(InputError, match=word):
+        run_experiment(RunOptions("2r", **changes), tmp_path, quiet)
+
+
+@pytest.mark.parametrize("symmetries", ["none", "exact"])
+def test_runs_without_learned_symmetries(symmetries, tmp_path, capsys):
+    arguments = ["run", "2r", "--out", tmp_path, "--samples", 40, "--symmetries", symmetries]
+    # the relations hold, the model of 40 samples does not: a run is worth what its model is worth
+    assert status([*map(str, arguments), "--json", "--quiet"]) == 1
+    document = json.loads(capsys.readouterr().out)
+    refuted = [verdict["claim"] for verdict in document["verdicts"] if not verdict["passed"]]
+    assert any("on the whole space" in claim for claim in refuted)
+    assert "model: does not hold on the whole space" in document["summary"][-1]
+    assert document["setup"]["symmetries"] == symmetries
+    assert (document["symmetry"] is None) == (symmetries == "none")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("robot", "order"), [("3r", 16), ("pendulum", 4), ("ur5", 16)])
+def test_other_robots(robot, order, tmp_path, capsys):
+    arguments = ["run", robot, "--out", tmp_path, "--samples", 200, "--json", "--quiet"]
+    status([str(a) for a in arguments])
+    document = json.loads(capsys.readouterr().out)
+    assert document["symmetry"]["found"] == order
+    assert document["symmetry"]["false"] == 0

@@ -1,0 +1,163 @@
+"""``learn --data`` without a robot file: from a CSV to a controller, the kinematics unknown."""
+
+import json
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from isotorque.cli.main import status
+from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.symbolic.robots.load_robot import load_robot
+from tests.learning.export.compiled import build, call, needs_cc
+
+JOINTS = ("base", "shoulder", "upper", "elbow", "lower", "wrist", "hand")
+
+
+def recording(path, poses, noise=0.0, seed=0, change=lambda q, tau: (q, tau)):
+    """Poses of the panda and torques by Pinocchio alone, under other names; its model."""
+    model = load_robot("panda").model
+    rng, data = np.random.default_rng(seed), model.createData()
+    q = rng.uniform(-2.5, 2.5, (poses, 7))
+    tau = np.array([pin.computeGeneralizedGravity(model, data, x) for x in q])
+    q, tau = change(q, tau + noise * rng.normal(size=q.shape))
+    header = ",".join([f"{j}.q" for j in JOINTS] + [f"{j}.tau" for j in JOINTS])
+    rows = "\n".join(",".join(map(repr, row)) for row in np.hstack([q, tau]).tolist())
+    path.write_text(f"{header}\n{rows}\n")
+    return model
+
+
+def isotorque(*arguments):
+    return status([str(a) for a in arguments])
+
+
+@needs_cc
+def test_three_commands_from_a_recording_to_a_controller(tmp_path, capsys):
+    data, out = tmp_path / "poses.csv", tmp_path / "out"
+    model = recording(data, 8)
+    assert isotorque("learn", "--data", data, "--out", out) == 0
+    assert "explains all samples to rounding" in capsys.readouterr().out
+    assert isotorque("relations", out) == 0
+    said = capsys.readouterr().out
+    assert "2 relations" in said
+    assert "do not contradict" in said
+    assert isotorque("export", out, "--c", tmp_path / "gravity.c") == 0
+    _, library = build((tmp_path / "gravity.c").read_text(), tmp_path)
+    q = np.random.default_rng(1).uniform(-3, 3, (200, 7))
+    pinocchio = model.createData()
+    expected = np.array([pin.computeGeneralizedGravity(model, pinocchio, x) for x in q])
+    assert np.abs(call(library, q) - expected).max() < 1e-9
+
+
+def test_noise_is_stated_or_estimated_and_errors_are_told(tmp_path, capsys):
+    data = tmp_path / "poses.csv"
+    recording(data, 25, noise=0.05)
+    for options, verdict in (((), "left out"), (("--torque-noise", 0.05), "was stated")):
+        out = tmp_path / str(len(options))
+        assert isotorque("learn", "--data", data, "--out", out, "--json", *options) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert verdict in found["verdict"]
+        assert found["joints"] == list(JOINTS)
+        assert found["standard_error"]["rms"] < 0.05
+        document = json.loads((out / "relations.json").read_text())
+        assert document["order"] == found["relations"]
+        assert max(document["relations"][1]["bound"]) > 0.01
+
+
+def test_too_few_poses_say_how_many_are_missing_and_leave_nothing(tmp_path, capsys):
+    data, out = tmp_path / "poses.csv", tmp_path / "out"
+    recording(data, 3)
+    assert isotorque("learn", "--data", data, "--out", out) == 1
+    assert "1 more poses: 3 different ones were given, 4 are needed" in capsys.readouterr().out
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda q, tau: (np.rad2deg(q), tau),
+        lambda q, tau: (q, tau[:, [0, 2, 1, 3, 4, 5, 6]]),
+        lambda q, tau: (q, tau + 3.0 * q),
+    ],
+)
+def test_what_is_no_rigid_chain_is_not_a_model(change, tmp_path, capsys):
+    """Degrees, swapped columns, springs."""
+    data, out = tmp_path / "poses.csv", tmp_path / "out"
+    recording(data, 20, noise=0.02, change=change)
+    assert isotorque("learn", "--data", data, "--out", out, "--torque-noise", 0.02) == 1
+    assert "no chain that was found explains" in capsys.readouterr().out
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--out", "x"), "ROBOT is missing"),
+        (("--out", "x", "--data", "poses.csv", "--learner", "network"), "rigid-chain"),
+        (("--out", "x", "--data", "poses.csv", "--samples", "8"), "--samples with no ROBOT"),
+        (("--out", "x", "--data", "poses.csv", "--lock", "elbow"), "--lock"),
+        (("--out", "x", "--data", "none.csv"), "none.csv"),
+        (("--out", "x", "--data", "wrong.csv"), "header"),
+        (("--out", "x", "--data", "poses.csv", "--torque-noise", "-1"), "torque_noise"),
+    ],
+)
+def test_bad_input_is_one_line(options, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    recording(tmp_path / "poses.csv", 8)
+    (tmp_path / "wrong.csv").write_text("angle,torque\n0,1\n")
+    assert isotorque("learn", *options) == 2
+    error = capsys.readouterr().err.strip()
+    assert error.startswith("error: ")
+    assert words in error
+    assert len(error.splitlines()) == 1
+    assert not (tmp_path / "x").exists()
+
+
+@pytest.mark.parametrize(("poses", "code"), [(6, 0), (3, 2)])
+def test_few_poses_beside_a_robot(poses, code, tmp_path, capsys):
+    """Six are enough though parts of them are not; of three it is said how many are missing."""
+    rng, robot = np.random.default_rng(0), load_robot("panda")
+    model, data = robot.model, robot.model.createData()
+    q = rng.uniform(-2.5, 2.5, (poses, 7))
+    tau = np.array([pin.computeGeneralizedGravity(model, data, x) for x in q])
+    file = tmp_path / "arm.csv"
+    write_csv(file, StaticSamples(q, tau), robot.joint_names)
+    options = ("--data", file, "--learner", "rigid-chain", "--out", tmp_path / "out", "--quiet")
+    assert isotorque("learn", "panda", *options) == code
+    captured = capsys.readouterr()
+    if code == 0:
+        assert isotorque("verify", tmp_path / "out", "--robot", "panda") == 0
+    else:
+        assert captured.err.count("\n") == 1
+        assert "1 more poses" in captured.err
+
+
+def test_a_constant_torque_is_no_noise_and_relations_say_what_they_speak_of(tmp_path, capsys):
+    rng = np.random.default_rng(3)
+    q = rng.uniform(-2, 2, (80, 2))
+    lower = 6.13 * np.cos(q.sum(axis=1))
+    tau = np.stack([18.39 * np.cos(q[:, 0]) + lower, lower + 0.5], axis=1)
+    tau += 0.05 * rng.normal(size=tau.shape)
+    write_csv(tmp_path / "poses.csv", StaticSamples(q, tau), ["q1", "q2"])
+    assert isotorque("learn", "--data", tmp_path / "poses.csv", "--out", tmp_path) == 0
+    assert "hold of gravity, of the measured torque with corrections" in capsys.readouterr().out
+    document = json.loads((tmp_path / "relations.json").read_text())
+    for relation, c in zip(document["relations"], document["corrections"], strict=True):
+        flips = (
+            np.diag(relation["Y"])[1] < 0 if np.ndim(relation["Y"]) == 2 else relation["Y"][1] < 0
+        )
+        assert abs(c[1] - (1.0 if flips else 0.0)) < 0.1
+
+
+def test_rows_of_one_pose_are_one_sample(tmp_path, capsys):
+    rng = np.random.default_rng(4)
+    poses = rng.uniform(-2, 2, (8, 2))
+    lower = 6.13 * np.cos(poses.sum(axis=1))
+    tau = np.stack([18.39 * np.cos(poses[:, 0]) + lower, lower], axis=1)
+    tau += np.sign(rng.normal(size=tau.shape)) * [1.2, 0.4]  # stiction: one value a pose
+    rows = np.repeat(poses, 25, axis=0) + 1e-5 * rng.normal(size=(200, 2))
+    torques = np.repeat(tau, 25, axis=0) + 0.02 * rng.normal(size=(200, 2))
+    write_csv(tmp_path / "poses.csv", StaticSamples(rows, torques), ["q1", "q2"])
+    assert isotorque("learn", "--data", tmp_path / "poses.csv", "--out", tmp_path / "out") == 1
+    assert "200 samples in 8 poses" in capsys.readouterr().out
+    assert not (tmp_path / "out" / "model.json").exists()

@@ -1,1 +1,0 @@
-"""Tests; a test mirrors the module it tests."""

@@ -1,5 +1,0 @@
-"""Figures as pure functions from arrays to Matplotlib figures."""
-
-from verify.figures.matplotlib_folder import give_matplotlib_a_folder
-
-give_matplotlib_a_folder()  # before it is imported, which is when it looks for one

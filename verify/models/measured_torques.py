@@ -1,0 +1,96 @@
+"""Measured torques held against the analytic gravity torque."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from isotorque.symbolic.gravity.gravity_model import GravityModel
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Disagreement:
+    """How far measured torques are from the analytic ones.
+
+    Attributes
+    ----------
+    rows : int
+        Number of samples compared.
+    rmse : float
+        Root mean square of measured less analytic torques, over samples and joints [N m].
+    rmse_by_joint, mean_by_joint : (n,) arrays
+        Root mean square and mean joint by joint [N m].
+    share : float
+        ``rmse`` over the root mean square of the measured torques.
+    largest : float
+        Largest difference [N m].
+    row : int
+        Number of its sample, from 0 on.
+    rmse_opposite : float
+        What ``rmse`` would be if the torques had the opposite sign [N m].
+    rmse_degrees : float
+        What it would be if the angles were degrees [N m].
+    """
+
+    rows: int
+    rmse: float
+    rmse_by_joint: Array
+    mean_by_joint: Array
+    share: float
+    largest: float
+    row: int
+    rmse_opposite: float
+    rmse_degrees: float
+
+
+def disagreement(
+    q: ArrayLike, torque: ArrayLike, gravity: GravityModel, *, leave_out: ArrayLike | None = None
+) -> Disagreement:
+    """Compare measured samples with the gravity torque of a robot.
+
+    Parameters
+    ----------
+    q, torque : (m, n) arrays
+        Configurations [rad] and torques that held them [N m], m at least 1.
+    gravity
+        The analytic torque.
+    leave_out : (m,) bools, optional
+        Samples that are not compared (outliers); not all of them.
+
+    Examples
+    --------
+    >>> from isotorque.symbolic.robots.load_robot import load_robot
+    >>> gravity = GravityModel(load_robot("2r"))
+    >>> q = np.array([[0.0, 0.5], [1.0, -0.5]])
+    >>> found = disagreement(q, -gravity.torque(q), gravity)
+    >>> round(found.share, 9), found.rmse_opposite
+    (2.0, 0.0)
+    """
+    samples, measured = np.asarray(q, dtype=float), np.asarray(torque, dtype=float)
+    numbers = np.arange(len(samples))
+    if leave_out is not None:
+        numbers = np.flatnonzero(~np.asarray(leave_out, dtype=bool))
+    samples, measured = samples[numbers], measured[numbers]
+    analytic = gravity.torque(samples)
+    difference = measured - analytic
+    size = _rms(measured)
+    row = int(np.argmax(np.abs(difference).max(axis=1)))
+    return Disagreement(
+        rows=len(numbers),
+        rmse=_rms(difference),
+        rmse_by_joint=np.sqrt(np.mean(difference**2, axis=0)),
+        mean_by_joint=difference.mean(axis=0),
+        share=_rms(difference) / size if size else 0.0,
+        largest=float(np.abs(difference[row]).max()),
+        row=int(numbers[row]),
+        rmse_opposite=_rms(measured + analytic),
+        rmse_degrees=_rms(measured - gravity.torque(np.deg2rad(samples))),
+    )
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

@@ -1,0 +1,1 @@
+"""Judges of relations: proof, bound, test or counterexample."""
