@@ -29,7 +29,7 @@ from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.groups.symmetry_group import group_structure
 from isotorque.symbolic.robots.load_robot import Robot, load_robot
-from isotorque.symbolic.robots.urdf import parse_urdf
+from isotorque.symbolic.robots.urdf.urdf_file import parse_urdf
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 PAGE = Path(__file__).parents[1] / "docs" / "robots.md"

@@ -9,7 +9,7 @@ from isotorque.runs.experiment import run_experiment
 from isotorque.runs.judgement import judge_run
 from isotorque.runs.options.run_options import RunOptions
 from isotorque.verify.report.figures.style import to_svg
-from isotorque.verify.report.figures_of_run import report_pictures
+from isotorque.verify.report.run_figures import report_pictures
 
 PICTURES = Path(__file__).parent / "pictures"
 KEPT = ("fig2a-configurations", "fig2b-level-sets", "fig6-bcts", "fig13-learning-curve")

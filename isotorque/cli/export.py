@@ -14,7 +14,7 @@ from isotorque.cli.robot_options import about, load, named, takes_robot
 from isotorque.symbolic.common.robot_options import RobotOptions
 
 if TYPE_CHECKING:
-    from isotorque.learning.export.torque_form import TorqueForm
+    from isotorque.learning.export.forms.torque_form import TorqueForm
 
 
 @takes_robot("model")
@@ -136,8 +136,8 @@ class _Export:
 
 
 def _learned(path: Path) -> _Export:
+    from isotorque.learning.export.forms.torque_form import largest_difference
     from isotorque.learning.export.from_learner import torque_form
-    from isotorque.learning.export.torque_form import largest_difference
     from isotorque.learning.files.saved_models import load_model
 
     saved = load_model(path)
@@ -158,8 +158,8 @@ def _learned(path: Path) -> _Export:
 
 
 def _analytic(options: RobotOptions, quiet: bool) -> _Export:
-    from isotorque.learning.export.torque_form import largest_difference
-    from isotorque.learning.export.waves import Waves
+    from isotorque.learning.export.forms.torque_form import largest_difference
+    from isotorque.learning.export.forms.waves import Waves
     from isotorque.symbolic.gravity.gravity_model import GravityModel
 
     robot = load(options, quiet)

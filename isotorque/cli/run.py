@@ -61,7 +61,7 @@ def run(
     from isotorque.runs.judgement import judge_run
     from isotorque.runs.options.learn_options import run_options
     from isotorque.runs.options.run_options import ArmOptions
-    from isotorque.runs.options.strategy import perform
+    from isotorque.runs.perform_run import perform
     from isotorque.runs.recorded_relations import save_relations
     from isotorque.symbolic.common.files import output_directory
     from isotorque.verify.report.write_report import write_report

@@ -30,8 +30,8 @@ from isotorque.paper.table.text import markdown, shown
 from isotorque.plain import plain
 from isotorque.symbolic.common.files import output_directory, write_whole
 from isotorque.verify.report.figures.style import save_figure, to_svg
-from isotorque.verify.report.figures_of_run import Picture
 from isotorque.verify.report.html_text import number
+from isotorque.verify.report.run_figures import Picture
 
 Progress = Callable[[str, int, int, str], None]
 ENDINGS = (".svg", ".pdf")

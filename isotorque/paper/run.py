@@ -10,7 +10,7 @@ from typing import Any
 from isotorque.learning.files.software_versions import software_versions
 from isotorque.paper.experiments.experiments import experiments_of
 from isotorque.paper.experiments.measured import Experiment
-from isotorque.paper.parts import Parts
+from isotorque.paper.finished_work import Parts
 from isotorque.paper.table.items import ITEMS
 from isotorque.paper.table.table import Row, make_rows
 from isotorque.paper.work import Piece, perform

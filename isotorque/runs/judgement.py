@@ -28,7 +28,7 @@ from isotorque.verify.relations.learned_symmetries import (
 )
 from isotorque.verify.report.figures.learning_curves import LearningCurve
 from isotorque.verify.report.figures.planar_links import planar_links
-from isotorque.verify.report.parts import StaticTorqueReport
+from isotorque.verify.report.report_sections import StaticTorqueReport
 from isotorque.verify.report.run_report import (
     LevelSetReport,
     RunReport,

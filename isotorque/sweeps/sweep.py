@@ -14,7 +14,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from isotorque.learning.files.software_versions import software_versions
-from isotorque.paper.parts import Parts
+from isotorque.paper.finished_work import Parts
 from isotorque.parallel import in_processes, on_cluster
 from isotorque.runs.experiment import run_experiment
 from isotorque.runs.lattice_learning import learn_from_lattice

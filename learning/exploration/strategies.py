@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning.arm import Arm, GuidedArm, Outcome
 from isotorque.learning.exploration.exploration import Counts, Exploration, ExplorationStep, Learner
-from isotorque.learning.exploration.exploration_cell import ExplorationCell
+from isotorque.learning.exploration.exploration_region import ExplorationCell
 from isotorque.learning.exploration.explored_share import ExploredShare
 from isotorque.learning.exploration.settings import ExplorationSettings
 from isotorque.learning.exploration.static_projection import StaticTorques

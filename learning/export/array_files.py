@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from isotorque.learning.export.chain_recursion import ChainRecursion
-from isotorque.learning.export.kernels import Kernels
-from isotorque.learning.export.local_functions import LocalFunctions
-from isotorque.learning.export.tanh_units import TanhUnits
-from isotorque.learning.export.torque_form import TorqueForm
-from isotorque.learning.export.waves import Waves
+from isotorque.learning.export.forms.chain_recursion import ChainRecursion
+from isotorque.learning.export.forms.kernels import Kernels
+from isotorque.learning.export.forms.local_functions import LocalFunctions
+from isotorque.learning.export.forms.tanh_units import TanhUnits
+from isotorque.learning.export.forms.torque_form import TorqueForm
+from isotorque.learning.export.forms.waves import Waves
 from isotorque.symbolic.common.errors import InputError
 
 SCHEMA = 1

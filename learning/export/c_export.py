@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from isotorque.learning.export.c_tables import comment
-from isotorque.learning.export.torque_form import TorqueForm
+from isotorque.learning.export.forms.c_tables import comment
+from isotorque.learning.export.forms.torque_form import TorqueForm
 from isotorque.symbolic.common.errors import InputError
 
 
@@ -37,7 +37,7 @@ def c_source(form: TorqueForm, about: Sequence[str] = (), joints: Sequence[str] 
     Examples
     --------
     >>> import numpy as np
-    >>> from isotorque.learning.export.waves import Waves
+    >>> from isotorque.learning.export.forms.waves import Waves
     >>> pendulum = Waves(np.array([[1]]), np.array([[6.13]]), np.array([[0.0]]))
     >>> [line for line in c_source(pendulum).splitlines() if line.startswith("void")]
     ['void isotorque_gravity(const double *q, double *tau)']

@@ -8,7 +8,7 @@ import casadi
 import numpy as np
 from numpy.typing import ArrayLike
 
-from isotorque.learning.export.torque_form import TorqueForm
+from isotorque.learning.export.forms.torque_form import TorqueForm
 
 
 class CasadiSpace:
@@ -82,7 +82,7 @@ def casadi_function(form: TorqueForm, name: str = "gravity") -> casadi.Function:
 
     Examples
     --------
-    >>> from isotorque.learning.export.waves import Waves
+    >>> from isotorque.learning.export.forms.waves import Waves
     >>> gravity = casadi_function(Waves(np.array([[1]]), np.array([[6.13]]), np.array([[0.0]])))
     >>> print(gravity([0.0]))
     6.13

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.export.chain_recursion import ChainRecursion
-from isotorque.learning.export.copies import Copies
-from isotorque.learning.export.folded_copy import FoldedCopy
-from isotorque.learning.export.kernels import Kernels
-from isotorque.learning.export.local_functions import LocalFunctions
-from isotorque.learning.export.tanh_units import TanhUnits
-from isotorque.learning.export.torque_form import TorqueForm
-from isotorque.learning.export.waves import Waves
+from isotorque.learning.export.forms.canonical_copy import FoldedCopy
+from isotorque.learning.export.forms.chain_recursion import ChainRecursion
+from isotorque.learning.export.forms.kernels import Kernels
+from isotorque.learning.export.forms.local_functions import LocalFunctions
+from isotorque.learning.export.forms.symmetric_copies import Copies
+from isotorque.learning.export.forms.tanh_units import TanhUnits
+from isotorque.learning.export.forms.torque_form import TorqueForm
+from isotorque.learning.export.forms.waves import Waves
 from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
     SymmetricGaussianProcess,
 )
@@ -54,7 +54,7 @@ def torque_form(learner: Any) -> TorqueForm:
 
     Examples
     --------
-    >>> from isotorque.learning.export.torque_form import evaluate
+    >>> from isotorque.learning.export.forms.torque_form import evaluate
     >>> q = np.linspace(-3.0, 3.0, 9)[:, None]
     >>> pendulum = EquivariantTrigonometric().fit(q, 5.0 * np.cos(q))
     >>> form = torque_form(pendulum)

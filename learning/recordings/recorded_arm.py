@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from isotorque.learning.arm import Arm, Outcome, OutcomeKind, Playback, Vector
+from isotorque.learning.recordings.database.queries import playback_of
 from isotorque.learning.recordings.recorded_command import (
     CommandKind,
     Row,
@@ -22,7 +23,6 @@ from isotorque.learning.recordings.recorded_command import (
 )
 from isotorque.learning.recordings.recording import Recording
 from isotorque.learning.recordings.recording_error import RecordingError
-from isotorque.learning.recordings.recording_queries import playback_of
 from isotorque.symbolic.common.errors import InputError
 
 

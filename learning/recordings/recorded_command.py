@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from isotorque.learning.arm import LimitHit, Outcome, OutcomeKind, Settled, TimedOut, Vector
-from isotorque.learning.recordings.recording_schema import checksum, command_id
+from isotorque.learning.recordings.database.schema import checksum, command_id
 
 FLOATS = np.dtype("<f8")
 

@@ -12,17 +12,8 @@ from numpy.typing import ArrayLike
 from isotorque.learning.arm import Outcome, Vector
 from isotorque.learning.files.run_info import RunInfo, canonical_json
 from isotorque.learning.files.software_versions import software_versions
-from isotorque.learning.recordings.commit_log import CommitLog, Statement
-from isotorque.learning.recordings.recorded_checkpoint import Checkpoint, pack_arrays
-from isotorque.learning.recordings.recorded_command import CommandKind, Row, row_of
-from isotorque.learning.recordings.recording_error import clear_errors
-from isotorque.learning.recordings.recording_file import (
-    check_before_writing,
-    part_statement,
-    write_new_file,
-)
-from isotorque.learning.recordings.recording_lock import WriterLock
-from isotorque.learning.recordings.recording_queries import (
+from isotorque.learning.recordings.database.commit_log import CommitLog, Statement
+from isotorque.learning.recordings.database.queries import (
     RecordedPart,
     read_checkpoint,
     read_motion,
@@ -30,8 +21,12 @@ from isotorque.learning.recordings.recording_queries import (
     read_rows,
     read_state,
 )
-from isotorque.learning.recordings.recording_reader import RecordingReader
-from isotorque.learning.recordings.recording_schema import (
+from isotorque.learning.recordings.database.recording_file import (
+    check_before_writing,
+    part_statement,
+    write_new_file,
+)
+from isotorque.learning.recordings.database.schema import (
     CHECKPOINT,
     COMMAND,
     MOTION,
@@ -40,6 +35,11 @@ from isotorque.learning.recordings.recording_schema import (
     checked,
     command_id,
 )
+from isotorque.learning.recordings.database.writer_lock import WriterLock
+from isotorque.learning.recordings.recorded_checkpoint import Checkpoint, pack_arrays
+from isotorque.learning.recordings.recorded_command import CommandKind, Row, row_of
+from isotorque.learning.recordings.recording_error import clear_errors
+from isotorque.learning.recordings.recording_reader import RecordingReader
 
 REPLAY_CHUNK = 4096
 

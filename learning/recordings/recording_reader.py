@@ -13,11 +13,8 @@ from numpy.typing import NDArray
 
 from isotorque.learning.arm import OutcomeKind, Playback, Vector
 from isotorque.learning.files.csv_samples import StaticSamples
-from isotorque.learning.recordings.recorded_checkpoint import Checkpoint
-from isotorque.learning.recordings.recorded_command import FLOATS, RecordedCommand, Row
-from isotorque.learning.recordings.recording_check import check_content
-from isotorque.learning.recordings.recording_error import RecordingError, clear_errors
-from isotorque.learning.recordings.recording_queries import (
+from isotorque.learning.recordings.database.damage_check import check_content
+from isotorque.learning.recordings.database.queries import (
     RecordedPart,
     read_checkpoint,
     read_parts,
@@ -25,7 +22,10 @@ from isotorque.learning.recordings.recording_queries import (
     read_robot,
     read_rows,
 )
-from isotorque.learning.recordings.recording_schema import check_schema, connect
+from isotorque.learning.recordings.database.schema import check_schema, connect
+from isotorque.learning.recordings.recorded_checkpoint import Checkpoint
+from isotorque.learning.recordings.recorded_command import FLOATS, RecordedCommand, Row
+from isotorque.learning.recordings.recording_error import RecordingError, clear_errors
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from isotorque.learning.learners.rigid.fitting.verdict import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.learned_symmetries import (
     Knowledge,

@@ -16,7 +16,7 @@ from isotorque.learning.simulator.dynamics.free_directions import (
     find_free_directions,
 )
 from isotorque.learning.simulator.dynamics.home import STABLE, find_home
-from isotorque.learning.simulator.dynamics.regularity import check_mass_matrix
+from isotorque.learning.simulator.dynamics.mass_matrix_check import check_mass_matrix
 from isotorque.learning.simulator.settings import PhysicsMode
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.joint_limits import check_limits

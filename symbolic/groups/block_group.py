@@ -13,9 +13,9 @@ from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.symmetry_group import DirectFactor, SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SAME_ANGLE, SymmetryRelation
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
+from isotorque.symbolic.symmetries.frequency_support import Support
 from isotorque.symbolic.symmetries.phase_proof import PhaseProof
 from isotorque.symbolic.symmetries.sign_components import sign_components
-from isotorque.symbolic.symmetries.support import Support
 from isotorque.symbolic.symmetries.torque_signs import TorqueSigns
 
 Integers = NDArray[np.int64]

@@ -17,17 +17,17 @@ from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.robot_options import RobotOptions
 from isotorque.symbolic.robots.arm_body import ArmBody
 from isotorque.symbolic.robots.body_checks import check_body
-from isotorque.symbolic.robots.chosen_part import (
+from isotorque.symbolic.robots.kinematic_tree import KinematicTree
+from isotorque.symbolic.robots.mass_plausibility import bodies, check_masses, moving_links
+from isotorque.symbolic.robots.robot_selection import (
     chosen_part,
     chosen_part_of_model,
     part_as_pinocchio_reads,
 )
-from isotorque.symbolic.robots.kinematic_tree import KinematicTree
-from isotorque.symbolic.robots.mass_plausibility import bodies, check_masses, moving_links
 from isotorque.symbolic.robots.snap_effect import torque_difference_bound
 from isotorque.symbolic.robots.snapped_bodies import snap_body, snap_urdf
 from isotorque.symbolic.robots.snapping import Snap
-from isotorque.symbolic.robots.urdf import Urdf, parse_urdf, urdf_text
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf, parse_urdf, urdf_text
 
 Array = NDArray[np.float64]
 

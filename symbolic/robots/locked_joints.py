@@ -9,7 +9,7 @@ from fnmatch import fnmatchcase
 
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.robot_options import RobotOptions
-from isotorque.symbolic.robots.urdf_elements import REVOLUTE, Mimic
+from isotorque.symbolic.robots.urdf.urdf_elements import REVOLUTE, Mimic
 
 AT_NEUTRAL_ONLY = ("planar", "floating")
 """Joints of several numbers: they can be locked where they are drawn, nowhere else."""

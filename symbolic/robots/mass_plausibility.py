@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.robots.arm_body import ArmBody
-from isotorque.symbolic.robots.urdf import Urdf
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf
 
 FAR = 3.0
 """Centres of mass further away than so many lengths of the arm are not meant."""

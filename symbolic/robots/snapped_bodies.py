@@ -21,9 +21,9 @@ from isotorque.symbolic.robots.snapping import (
     snap_direction,
     snap_rotation,
 )
-from isotorque.symbolic.robots.urdf import Urdf
-from isotorque.symbolic.robots.urdf_body import body_from_urdf
-from isotorque.symbolic.robots.urdf_elements import REVOLUTE, UrdfJoint
+from isotorque.symbolic.robots.urdf.urdf_body import body_from_urdf
+from isotorque.symbolic.robots.urdf.urdf_elements import REVOLUTE, UrdfJoint
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf
 
 Array = NDArray[np.float64]
 

@@ -21,9 +21,9 @@ from isotorque.symbolic.symmetries.exact_symmetries import (
     restricted,
     specialised,
 )
+from isotorque.symbolic.symmetries.frequency_support import Support
 from isotorque.symbolic.symmetries.residual_bound import residual_bound
 from isotorque.symbolic.symmetries.reynolds_average import joint_offsets, symmetric_part_error
-from isotorque.symbolic.symmetries.support import Support
 
 Array = NDArray[np.float64]
 IntMatrix = NDArray[np.int64]

@@ -11,8 +11,8 @@ from isotorque.symbolic.groups.block_group import BlockGroup
 from isotorque.symbolic.groups.product_group import ProductGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
+from isotorque.symbolic.symmetries.frequency_support import Support, amplitude_classes
 from isotorque.symbolic.symmetries.phase_proof import PhaseProof
-from isotorque.symbolic.symmetries.support import Support, amplitude_classes
 
 RELATIVE = 1e-12
 """Float coefficients closer than this, relative to the largest, count as equal."""

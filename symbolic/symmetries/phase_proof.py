@@ -16,7 +16,7 @@ from isotorque.symbolic.polynomials.coefficients import is_zero
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 
 if TYPE_CHECKING:
-    from isotorque.symbolic.symmetries.support import Support
+    from isotorque.symbolic.symmetries.frequency_support import Support
 
 Gauss = tuple[Any, Any]
 UNITS = ((1, 0), (0, 1), (-1, 0), (0, -1))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.symbolic.lattices.integer_lattice import generate_lattice, saturation
-from isotorque.symbolic.symmetries.support import Support
+from isotorque.symbolic.symmetries.frequency_support import Support
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.symbolic.lattices.integer_lattice import coordinates_in, independent_rows
+from isotorque.symbolic.symmetries.frequency_support import Support
 from isotorque.symbolic.symmetries.sign_components import SignComponent
-from isotorque.symbolic.symmetries.support import Support
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -14,7 +14,7 @@ from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.verify.relations.learned_symmetries import SymmetryReport
 from isotorque.verify.relations.relation_files import relations_document
 from isotorque.verify.relations.verify_relation import describe_relation
-from isotorque.verify.report.parts import ExplorationReport
+from isotorque.verify.report.report_sections import ExplorationReport
 from isotorque.verify.report.run_report import RunReport
 from isotorque.verify.verdict import Verdict
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from isotorque.verify.models.verify_model import ModelJudgement
 from isotorque.verify.relations.learned_symmetries import SymmetryReport
 from isotorque.verify.report.figures.learning_curves import LearningCurve
-from isotorque.verify.report.parts import (
+from isotorque.verify.report.report_sections import (
     DiscoveryReport,
     DomainReport,
     ExplorationReport,

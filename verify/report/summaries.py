@@ -16,7 +16,7 @@ from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.verify.report.figures.torques import ProfileTrace
-from isotorque.verify.report.parts import (
+from isotorque.verify.report.report_sections import (
     DiscoveryReport,
     DomainReport,
     ExplorationReport,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from isotorque.verify.models.verify_model import Array, ModelJudgement, TargetResult
 from isotorque.verify.relations.learned_symmetries import SymmetryReport
-from isotorque.verify.report.parts import DiscoveryReport, StaticTorqueReport
+from isotorque.verify.report.report_sections import DiscoveryReport, StaticTorqueReport
 from isotorque.verify.verdict import sizes
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from markupsafe import Markup
 from isotorque.symbolic.common.errors import InputError
 from isotorque.verify.report.document import report_document
 from isotorque.verify.report.figures.style import to_svg
-from isotorque.verify.report.figures_of_run import Picture, report_pictures
 from isotorque.verify.report.html_text import map_lines, matrix, number, vector
+from isotorque.verify.report.run_figures import Picture, report_pictures
 from isotorque.verify.report.run_report import RunReport
 from isotorque.verify.verdict import Verdict, all_passed
 

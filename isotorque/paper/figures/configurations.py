@@ -13,7 +13,7 @@ from isotorque.verify.report.figures.arm_structure import arm_structure
 from isotorque.verify.report.figures.configurations import domain_map, explored_map
 from isotorque.verify.report.figures.joint_angles import joint_angles
 from isotorque.verify.report.figures.level_sets import level_set_map, stick_figure
-from isotorque.verify.report.figures_of_run import Picture
+from isotorque.verify.report.run_figures import Picture
 
 Data = Mapping[str, Any]
 _STAY = (

@@ -15,7 +15,7 @@ from isotorque.verify.report.figures.torques import (
     static_torque_map,
     torque_profiles,
 )
-from isotorque.verify.report.figures_of_run import Picture
+from isotorque.verify.report.run_figures import Picture
 
 Data = Mapping[str, Any]
 LINEAR_TOP = 0.03

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning.files.csv_samples import StaticSamples, joint_names_of, read_csv
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
-from isotorque.learning.learners.rigid.fitting.verdict import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import ChainSymmetries
 from isotorque.learning.statistics.poses import group_poses

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from isotorque.learning.files.csv_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import HeldOut, held_out
 from isotorque.learning.learners.registry import LearningTask, learner_by_name
-from isotorque.learning.learners.rigid.fitting.verdict import NotAccepted
+from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted
 from isotorque.learning.relations.chain_identification import METHOD as CHAIN
 from isotorque.learning.relations.chain_identification import with_chain
 from isotorque.learning.relations.learn_relations import learn_relations

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.learners.base import SavedLearner
-from isotorque.learning.learners.local_linear.cell_grid import (
+from isotorque.learning.learners.local_linear.cell_list import (
     make_cell_grid,
     sees_several_images,
     with_room,
 )
-from isotorque.learning.learners.local_linear.cell_search import enter
+from isotorque.learning.learners.local_linear.cell_list_search import enter
 from isotorque.learning.learners.local_linear.predict_kernels import (
     Rule,
     make_scratch,

@@ -13,8 +13,8 @@ import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 from numpy.typing import NDArray
 
-from isotorque.learning.learners.local_linear.cell_grid import CellGrid
-from isotorque.learning.learners.local_linear.cell_search import find_far, find_near
+from isotorque.learning.learners.local_linear.cell_list import CellGrid
+from isotorque.learning.learners.local_linear.cell_list_search import find_far, find_near
 from isotorque.symbolic.common.compiled import compiled
 
 Array = NDArray[np.float64]

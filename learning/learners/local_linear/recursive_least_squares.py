@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.learners.base import SavedLearner
-from isotorque.learning.learners.local_linear.cell_grid import make_cell_grid, with_room
-from isotorque.learning.learners.local_linear.cell_search import enter
+from isotorque.learning.learners.local_linear.cell_list import make_cell_grid, with_room
+from isotorque.learning.learners.local_linear.cell_list_search import enter
 from isotorque.learning.learners.local_linear.predict_kernels import make_scratch
 from isotorque.learning.learners.local_linear.square_root_filter import SquareRootFilter
 from isotorque.learning.learners.local_linear.tied_basis import (

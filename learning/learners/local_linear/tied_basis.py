@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from isotorque.learning.learners.local_linear.cell_search import find_far, find_near
+from isotorque.learning.learners.local_linear.cell_list_search import find_far, find_near
 from isotorque.symbolic.common.compiled import compiled
 
 

@@ -19,13 +19,13 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 )
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
+from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted, Verdict
 from isotorque.learning.learners.rigid.fitting.gains import (
     GainGroup,
     gain_groups,
     with_fixed_scales,
 )
 from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
-from isotorque.learning.learners.rigid.fitting.verdict import NotAccepted, Verdict
 from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
 from isotorque.learning.learners.rigid.structure.chain_symmetries import (
     ChainSymmetries,

@@ -10,7 +10,7 @@ from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import CandidateGroup
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
-from isotorque.symbolic.symmetries.support import Support
+from isotorque.symbolic.symmetries.frequency_support import Support
 
 Array = NDArray[np.float64]
 Table = NDArray[np.intp]

@@ -7,7 +7,7 @@ import pytest
 
 from isotorque.cli.main import status
 from isotorque.learning.export.array_files import read_export
-from isotorque.learning.export.torque_form import evaluate
+from isotorque.learning.export.forms.torque_form import evaluate
 from isotorque.learning.files.saved_models import SavedModel, save_model
 from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
     SymmetricGaussianProcess,
@@ -21,8 +21,8 @@ from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
-from tests.learning.export.compiled import build, call, needs_cc
-from tests.learning.export.models import QUICK, far_queries, samples
+from tests.learning.export.compiled_source import build, call, needs_cc
+from tests.learning.export.fitted_models import QUICK, far_queries, samples
 
 #: One of every kind that can be saved, and the kind of its export.
 LEARNERS = [

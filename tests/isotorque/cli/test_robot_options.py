@@ -15,7 +15,7 @@ import typer
 from isotorque.cli.main import app, status
 from isotorque.cli.robot_options import ROBOT_OPTIONS
 from isotorque.symbolic.robots.load_robot import load_robot
-from tests.symbolic.robots.test_chosen_part import GRIPPERS, arm, text
+from tests.symbolic.robots.test_robot_selection import GRIPPERS, arm, text
 
 COMMANDS = (
     "derive", "symmetries", "domain", "simulate", "discover", "learn", "verify", "run", "relations",

@@ -13,8 +13,8 @@ from isotorque.paper.experiments.discovery import measure_discovery
 from isotorque.paper.experiments.experiments import EXPERIMENTS, experiments_of
 from isotorque.paper.experiments.measured import Effort
 from isotorque.paper.experiments.statics import measure_domain, measure_ranges, measure_symmetries
+from isotorque.paper.finished_work import Parts
 from isotorque.paper.page import paper_pictures, render_page, write_pages
-from isotorque.paper.parts import Parts
 from isotorque.paper.run import Comparison, PaperOptions, compare
 from isotorque.paper.table.items import ITEMS
 from isotorque.paper.table.rules import equal

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from isotorque.learning.export.array_files import export_bytes, read_export
+from isotorque.learning.export.forms.torque_form import evaluate
 from isotorque.learning.export.from_learner import torque_form
-from isotorque.learning.export.torque_form import evaluate
 from isotorque.symbolic.common.errors import InputError
-from tests.learning.export.models import MAKERS, far_queries, fitted_learner
+from tests.learning.export.fitted_models import MAKERS, far_queries, fitted_learner
 
 
 def written(folder, name="trigonometric", **kwargs):

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from isotorque.learning.export.c_export import c_source
+from isotorque.learning.export.forms.waves import Waves
 from isotorque.learning.export.from_learner import torque_form
-from isotorque.learning.export.waves import Waves
 from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
     SymmetricGaussianProcess,
 )
@@ -14,8 +14,8 @@ from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
-from tests.learning.export.compiled import build, call, needs_cc, needs_nm, symbols
-from tests.learning.export.models import MAKERS, QUICK, far_queries, fitted_learner, samples
+from tests.learning.export.compiled_source import build, call, needs_cc, needs_nm, symbols
+from tests.learning.export.fitted_models import MAKERS, QUICK, far_queries, fitted_learner, samples
 
 
 def largest_error(form, learner, folder):

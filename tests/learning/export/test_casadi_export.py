@@ -5,7 +5,7 @@ import pytest
 from isotorque.learning.export.casadi_export import casadi_function
 from isotorque.learning.export.from_learner import torque_form
 from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
-from tests.learning.export.models import MAKERS, far_queries, fitted_learner, samples
+from tests.learning.export.fitted_models import MAKERS, far_queries, fitted_learner, samples
 
 
 def evaluated(function, q):

@@ -4,9 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sklearn.linear_model import LinearRegression
 
+from isotorque.learning.export.forms.torque_form import evaluate, largest_difference
+from isotorque.learning.export.forms.waves import Waves
 from isotorque.learning.export.from_learner import torque_form
-from isotorque.learning.export.torque_form import evaluate, largest_difference
-from isotorque.learning.export.waves import Waves
 from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
     SymmetricGaussianProcess,
 )
@@ -18,7 +18,7 @@ from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from isotorque.verify.testing.strategies import known_arms
-from tests.learning.export.models import QUICK, fitted_learner, samples
+from tests.learning.export.fitted_models import QUICK, fitted_learner, samples
 
 
 @given(arm=known_arms(max_joints=3), seed=st.integers(0, 2**32 - 1))

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isotorque.learning.files.run_info import RunInfo
-from isotorque.learning.recordings.commit_log import CommitLog
+from isotorque.learning.recordings.database.commit_log import CommitLog
 from isotorque.learning.recordings.recorded_arm import RecordedArm
 from isotorque.learning.recordings.recording import Recording
 from isotorque.learning.recordings.recording_error import RecordingError, translated

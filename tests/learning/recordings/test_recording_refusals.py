@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from isotorque.learning.recordings.database.schema import SCHEMA_VERSION
 from isotorque.learning.recordings.recorded_arm import RecordedArm
 from isotorque.learning.recordings.recording import Recording
 from isotorque.learning.recordings.recording_error import RecordingError
 from isotorque.learning.recordings.recording_reader import RecordingReader
-from isotorque.learning.recordings.recording_schema import SCHEMA_VERSION
 from isotorque.symbolic.common.errors import InputError
 from tests.learning.recordings.recording_tools import INFO, ToyArm, explore, files, tables
 

@@ -63,7 +63,7 @@ def as_somebody(installation, code, **places):
 
 COMPILE = """
 from isotorque.symbolic.common.compiled import compiled
-from isotorque.learning.learners.local_linear import cell_search
+from isotorque.learning.learners.local_linear import cell_list_search as cell_search
 import isotorque.learning.simulator.compiled.motion
 import isotorque.learning.relations.pairing.hough_transform
 assert isotorque.__file__.startswith({site!r}), isotorque.__file__
@@ -102,7 +102,7 @@ def test_the_folder_that_the_user_names_is_taken(installation):
     place = Path(tempfile.mkdtemp())
     place.chmod(0o777)
     try:
-        code = "from isotorque.learning.learners.local_linear.cell_search import cell_step\n"
+        code = "from isotorque.learning.learners.local_linear.cell_list_search import cell_step\n"
         code += "print(cell_step.stats.cache_path)"
         done, made = as_somebody(installation, code, NUMBA_CACHE_DIR=str(place))
         assert (done.returncode, done.stderr, made) == (0, "", [])

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import isotorque
-from isotorque.learning.learners.rigid.fitting.verdict import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted, Verdict
 from isotorque.learning.recordings.recording_error import RecordingError
 from isotorque.learning.relations.potential.errors_in_variables import Undetermined
 from isotorque.symbolic.common.errors import InputError, visible

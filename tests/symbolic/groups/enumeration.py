@@ -7,8 +7,8 @@ import numpy as np
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.symbolic.symmetries.exact_symmetries import RELATIVE, specialised
+from isotorque.symbolic.symmetries.frequency_support import Support, amplitude_classes
 from isotorque.symbolic.symmetries.phase_proof import PhaseProof
-from isotorque.symbolic.symmetries.support import Support, amplitude_classes
 
 
 def enumerated_symmetries(potential: TrigonometricPolynomial) -> SymmetryGroup:

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.robots.arm_body import ArmBody
-from isotorque.symbolic.robots.urdf import urdf_text
-from tests.symbolic.robots.urdf_strategies import urdfs
+from isotorque.symbolic.robots.urdf.urdf_file import urdf_text
+from tests.symbolic.robots.urdf.urdf_strategies import urdfs
 
 ARRAYS = (
     "rotations",

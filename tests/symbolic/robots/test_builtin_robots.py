@@ -12,7 +12,7 @@ from isotorque.symbolic.gravity.potential import derive_potential
 from isotorque.symbolic.robots.load_robot import builtin_robots, load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from tests.symbolic.robots.test_load_robot import FILES, error_beyond_bound, gravity
-from tests.symbolic.robots.urdf_strategies import angles
+from tests.symbolic.robots.urdf.urdf_strategies import angles
 
 NAMES = [robot.name for robot in builtin_robots()]
 

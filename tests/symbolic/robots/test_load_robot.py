@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.robots.load_robot import Robot, builtin_robots, load_robot
-from isotorque.symbolic.robots.urdf import urdf_text
-from tests.symbolic.robots.urdf_strategies import angles, rounded_right_angles, urdfs
+from isotorque.symbolic.robots.urdf.urdf_file import urdf_text
+from tests.symbolic.robots.urdf.urdf_strategies import angles, rounded_right_angles, urdfs
 
 FILES = Path(__file__).parents[3] / "symbolic" / "robot_files"
 NAMES = [robot.name for robot in builtin_robots()]

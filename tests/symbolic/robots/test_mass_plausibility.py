@@ -15,10 +15,10 @@ from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.robots.arm_body import ArmBody
 from isotorque.symbolic.robots.load_robot import builtin_robots, load_robot
 from isotorque.symbolic.robots.mass_plausibility import feels_gravity
-from isotorque.symbolic.robots.urdf import Urdf, parse_urdf, urdf_text
-from isotorque.symbolic.robots.urdf_elements import UrdfLink
-from tests.symbolic.robots.test_chosen_part import arm, finger, text
-from tests.symbolic.robots.urdf_strategies import urdfs
+from isotorque.symbolic.robots.urdf.urdf_elements import UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf, parse_urdf, urdf_text
+from tests.symbolic.robots.test_robot_selection import arm, finger, text
+from tests.symbolic.robots.urdf.urdf_strategies import urdfs
 
 
 def without(urdf: Urdf, *names: str, **changes) -> Urdf:

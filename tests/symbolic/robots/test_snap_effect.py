@@ -18,8 +18,8 @@ from isotorque.symbolic.robots.snap_effect import (
     _by_lengths,
     torque_difference_bound,
 )
-from isotorque.symbolic.robots.urdf import urdf_text
-from tests.symbolic.robots.urdf_strategies import urdfs
+from isotorque.symbolic.robots.urdf.urdf_file import urdf_text
+from tests.symbolic.robots.urdf.urdf_strategies import urdfs
 
 PER_JOINT = [field.name for field in fields(ArmBody)][2:-1]
 

@@ -19,14 +19,14 @@ from isotorque.verify.report.document import report_document
 from isotorque.verify.report.figures.learning_curves import LearningCurve
 from isotorque.verify.report.figures.level_sets import planar_chain
 from isotorque.verify.report.figures.torques import ProfileTrace
-from isotorque.verify.report.figures_of_run import report_pictures
-from isotorque.verify.report.parts import (
+from isotorque.verify.report.report_sections import (
     DiscoveryReport,
     ExplorationReport,
     Gate,
     LevelSetReport,
     StaticTorqueReport,
 )
+from isotorque.verify.report.run_figures import report_pictures
 from isotorque.verify.report.run_report import RunReport, RunSetup, Stage
 from isotorque.verify.report.summaries import summarise_domain
 from isotorque.verify.report.write_report import render_report, verdicts_page, write_report

@@ -16,13 +16,13 @@ from isotorque.learning.learners.rigid.fitting.chain_search import (
     best_of,
     polished,
 )
+from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
 from isotorque.learning.learners.rigid.fitting.noise_estimate import (
     FOLDS,
     held_out_error,
     with_estimated_noise,
 )
 from isotorque.learning.learners.rigid.fitting.start_search import StartSearch
-from isotorque.learning.learners.rigid.fitting.verdict import Verdict
 from isotorque.learning.learners.rigid.one_thread import one_thread
 from isotorque.learning.learners.rigid.planning.information import identifiable_count, probe_poses
 from isotorque.learning.learners.rigid.planning.poses_needed import most_parameters, poses_needed

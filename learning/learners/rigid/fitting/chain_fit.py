@@ -12,7 +12,7 @@ from scipy import stats
 from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
-from isotorque.learning.learners.rigid.fitting.verdict import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
 from isotorque.learning.learners.rigid.planning.information import Information
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from isotorque.learning.learners.rigid.fitting.chain_search import (
     best_of,
     search,
 )
-from isotorque.learning.learners.rigid.fitting.verdict import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
 
 
 class StartSearch:

@@ -17,7 +17,7 @@ from isotorque.learning.learners.rigid.fitting.chain_search import (
     SearchedChain,
     minimise,
 )
-from isotorque.learning.learners.rigid.fitting.verdict import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
 from isotorque.learning.learners.rigid.one_thread import one_thread
 from isotorque.learning.learners.rigid.planning.information import Information
 from isotorque.learning.learners.rigid.structure.canonical_form import RIGHT_ANGLE, CanonicalForm

@@ -9,7 +9,7 @@ import pytest
 from isotorque.cli.main import status
 from isotorque.learning.files.csv_samples import StaticSamples, write_csv
 from isotorque.symbolic.robots.load_robot import load_robot
-from tests.learning.export.compiled import build, call, needs_cc
+from tests.learning.export.compiled_source import build, call, needs_cc
 
 JOINTS = ("base", "shoulder", "upper", "elbow", "lower", "wrist", "hand")
 

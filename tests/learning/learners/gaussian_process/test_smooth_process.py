@@ -6,8 +6,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from isotorque.learning.export.forms.torque_form import largest_difference
 from isotorque.learning.export.from_learner import torque_form
-from isotorque.learning.export.torque_form import largest_difference
 from isotorque.learning.learners.gaussian_process import smooth_process
 from isotorque.learning.learners.gaussian_process.smooth_process import kernel_waves, smooth_mean
 from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (

@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from isotorque.learning.export.forms.torque_form import evaluate
 from isotorque.learning.export.from_learner import torque_form
-from isotorque.learning.export.torque_form import evaluate
 from isotorque.learning.learners.local_linear.recursive_least_squares import RecursiveLeastSquares
 from tests.learning.learners.random_groups import groups, worst_asymmetry
 

@@ -11,7 +11,7 @@ import pytest
 from sklearn.base import clone
 
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
-from isotorque.learning.learners.rigid.fitting.verdict import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted, Verdict
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel

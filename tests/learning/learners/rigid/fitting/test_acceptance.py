@@ -10,8 +10,8 @@ from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
 from isotorque.learning.learners.rigid.fitting.chain_parameters import serial
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
+from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
 from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
-from isotorque.learning.learners.rigid.fitting.verdict import Verdict
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot

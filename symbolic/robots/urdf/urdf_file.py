@@ -12,7 +12,7 @@ import defusedxml.sax
 
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.joint_limits import UNLIMITED
-from isotorque.symbolic.robots.urdf_elements import PRODUCTS, UrdfJoint, UrdfLink, UrdfReader
+from isotorque.symbolic.robots.urdf.urdf_elements import PRODUCTS, UrdfJoint, UrdfLink, UrdfReader
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.export.c_tables import Tables
-from isotorque.learning.export.copies import TURN, Copies, wrap
-from isotorque.learning.export.space import Space
+from isotorque.learning.export.forms.array_operations import Space
+from isotorque.learning.export.forms.c_tables import Tables
+from isotorque.learning.export.forms.symmetric_copies import TURN, Copies, wrap
 from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 
 Array = NDArray[np.float64]

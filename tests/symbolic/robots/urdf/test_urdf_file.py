@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 
 from isotorque.symbolic.common.errors import InputError
-from isotorque.symbolic.robots.urdf import parse_urdf, urdf_text
-from tests.symbolic.robots.urdf_strategies import urdfs
+from isotorque.symbolic.robots.urdf.urdf_file import parse_urdf, urdf_text
+from tests.symbolic.robots.urdf.urdf_strategies import urdfs
 
 LINK = """<link name="{name}"><inertial><origin xyz="0.1 0 0"/><mass value="{mass}"/>
     <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>"""
@@ -40,7 +40,7 @@ def test_a_description_written_and_read_again_is_the_same(urdf):
 
 
 def test_pinocchio_reads_from_our_text_what_it_reads_from_the_file():
-    path = Path(__file__).parents[3] / "symbolic" / "robot_files" / "panda.urdf"
+    path = Path(__file__).parents[4] / "symbolic" / "robot_files" / "panda.urdf"
     mine = pin.buildModelFromXML(urdf_text(parse_urdf(path.read_bytes(), "panda")))
     theirs = pin.buildModelFromUrdf(str(path))
     assert list(mine.names) == list(theirs.names)

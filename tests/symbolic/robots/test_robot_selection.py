@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.robot_options import RobotOptions
 from isotorque.symbolic.robots.load_robot import Robot, load_robot
-from isotorque.symbolic.robots.urdf import Urdf, parse_urdf, urdf_text
-from isotorque.symbolic.robots.urdf_elements import Mimic, UrdfJoint, UrdfLink
-from tests.symbolic.robots.urdf_strategies import (
+from isotorque.symbolic.robots.urdf.urdf_elements import Mimic, UrdfJoint, UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf, parse_urdf, urdf_text
+from tests.symbolic.robots.urdf.urdf_strategies import (
     angles,
     lengths,
     rounded_right_angles,

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from isotorque.learning.exploration.exploration_cell import ExplorationCell
+from isotorque.learning.exploration.exploration_region import ExplorationCell
 from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot

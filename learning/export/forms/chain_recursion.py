@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.export.c_tables import Tables
-from isotorque.learning.export.space import Space
+from isotorque.learning.export.forms.array_operations import Space
+from isotorque.learning.export.forms.c_tables import Tables
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -6,17 +6,17 @@ import os
 from pathlib import Path
 
 from isotorque.learning.files.run_info import RunInfo, canonical_json
-from isotorque.learning.recordings.commit_log import Statement
-from isotorque.learning.recordings.recording_check import check_content
-from isotorque.learning.recordings.recording_error import RecordingError
-from isotorque.learning.recordings.recording_queries import RecordedPart, read_parts, read_robot
-from isotorque.learning.recordings.recording_schema import (
+from isotorque.learning.recordings.database.commit_log import Statement
+from isotorque.learning.recordings.database.damage_check import check_content
+from isotorque.learning.recordings.database.queries import RecordedPart, read_parts, read_robot
+from isotorque.learning.recordings.database.schema import (
     PART,
     ROBOT,
     checked,
     connect,
     create_tables,
 )
+from isotorque.learning.recordings.recording_error import RecordingError
 
 
 def part_statement(part: RecordedPart) -> Statement:

@@ -11,8 +11,8 @@ import pinocchio as pin
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.robot_options import RobotOptions
 from isotorque.symbolic.robots.locked_joints import JointOfRobot, locked_positions
-from isotorque.symbolic.robots.urdf import Urdf
-from isotorque.symbolic.robots.urdf_elements import UrdfJoint, UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_elements import UrdfJoint, UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf
 
 _KINDS = {
     **dict.fromkeys(("RX", "RY", "RZ", "RevoluteUnaligned"), "revolute"),

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from isotorque.learning.export.c_export import c_source
 from isotorque.learning.export.casadi_export import casadi_function
-from isotorque.learning.export.chain_recursion import ChainRecursion
-from isotorque.learning.export.torque_form import evaluate
+from isotorque.learning.export.forms.chain_recursion import ChainRecursion
+from isotorque.learning.export.forms.torque_form import evaluate
 from isotorque.learning.learners.rigid.structure.canonical_form import CanonicalForm
-from tests.learning.export.compiled import build, call, needs_cc
+from tests.learning.export.compiled_source import build, call, needs_cc
 from tests.learning.learners.rigid.random_chains import KINDS, random_chain
 
 

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from isotorque.learning.recordings.database.schema import PAGE_BYTES, connect
 from isotorque.learning.recordings.recording_error import translated
-from isotorque.learning.recordings.recording_schema import PAGE_BYTES, connect
 
 Statement = tuple[str, Sequence[Any]]
 

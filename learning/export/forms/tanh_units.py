@@ -8,10 +8,14 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.export.c_tables import Tables
-from isotorque.learning.export.copies import Copies
-from isotorque.learning.export.folded_copy import FoldedCopy, copies_from_arrays, copies_to_arrays
-from isotorque.learning.export.space import Space
+from isotorque.learning.export.forms.array_operations import Space
+from isotorque.learning.export.forms.c_tables import Tables
+from isotorque.learning.export.forms.canonical_copy import (
+    FoldedCopy,
+    copies_from_arrays,
+    copies_to_arrays,
+)
+from isotorque.learning.export.forms.symmetric_copies import Copies
 
 Array = NDArray[np.float64]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import sqlite3
 from pathlib import Path
 
+from isotorque.learning.recordings.database.schema import check_schema, checksum, command_id
 from isotorque.learning.recordings.recorded_command import CommandKind
 from isotorque.learning.recordings.recording_error import RecordingError
-from isotorque.learning.recordings.recording_schema import check_schema, checksum, command_id
 
 # Tables whose last column is the checksum of the others.
 CHECKED = ("robot", "part", "command", "motion", "arm_state", "checkpoint")

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from isotorque.symbolic.robots.arm_body import ArmBody
-from isotorque.symbolic.robots.urdf import Urdf, urdf_text
-from isotorque.symbolic.robots.urdf_body import body_from_urdf
-from isotorque.symbolic.robots.urdf_elements import UrdfJoint, UrdfLink
-from tests.symbolic.robots.urdf_strategies import lengths, right_angles, urdfs
+from isotorque.symbolic.robots.urdf.urdf_body import body_from_urdf
+from isotorque.symbolic.robots.urdf.urdf_elements import UrdfJoint, UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf, urdf_text
+from tests.symbolic.robots.urdf.urdf_strategies import lengths, right_angles, urdfs
 
 FIELDS = (
     "rotations",

@@ -14,7 +14,7 @@ from isotorque.verify.report.figures.torques import (
     static_torque_map,
     torque_profiles,
 )
-from isotorque.verify.report.parts import LevelSetReport
+from isotorque.verify.report.report_sections import LevelSetReport
 from isotorque.verify.report.run_report import RunReport
 
 if TYPE_CHECKING:

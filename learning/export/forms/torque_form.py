@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.export.space import NumpySpace, Space
+from isotorque.learning.export.forms.array_operations import NumpySpace, Space
 
 Array = NDArray[np.float64]
 CHECKS = 100

@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.export.c_tables import Tables
-from isotorque.learning.export.copies import Copies
-from isotorque.learning.export.folded_copy import copies_from_arrays, copies_to_arrays
-from isotorque.learning.export.space import Space
-from isotorque.learning.export.waves import Waves
+from isotorque.learning.export.forms.array_operations import Space
+from isotorque.learning.export.forms.c_tables import Tables
+from isotorque.learning.export.forms.canonical_copy import copies_from_arrays, copies_to_arrays
+from isotorque.learning.export.forms.symmetric_copies import Copies
+from isotorque.learning.export.forms.waves import Waves
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from isotorque.symbolic.common.joint_limits import read_limits
 from isotorque.symbolic.robots.arm_body import ArmBody, positive_or_none
 from isotorque.symbolic.robots.rotations import multiply, rotation_from_rpy, unit_axis
 from isotorque.symbolic.robots.snapping import rotation_about
-from isotorque.symbolic.robots.urdf import Urdf
-from isotorque.symbolic.robots.urdf_elements import UrdfJoint, UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_elements import UrdfJoint, UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf
 
 Array = NDArray[np.float64]
 

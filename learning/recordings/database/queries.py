@@ -10,9 +10,9 @@ from typing import Any
 
 from isotorque.learning.arm import Outcome, Playback
 from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.recordings.database.schema import command_id
 from isotorque.learning.recordings.recorded_checkpoint import Checkpoint, unpack_arrays
 from isotorque.learning.recordings.recorded_command import Row, outcome_in, to_array
-from isotorque.learning.recordings.recording_schema import command_id
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import math
 
 from hypothesis import strategies as st
 
-from isotorque.symbolic.robots.urdf import Urdf
-from isotorque.symbolic.robots.urdf_elements import UrdfJoint, UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_elements import UrdfJoint, UrdfLink
+from isotorque.symbolic.robots.urdf.urdf_file import Urdf
 
 angles = st.floats(-math.pi, math.pi)
 right_angles = st.integers(-4, 4).map(lambda k: k * math.pi / 2)

@@ -1,0 +1,1 @@
+"""Torque forms: what an exported model computes, for NumPy, C and CasADi alike."""

@@ -1,0 +1,1 @@
+"""The SQLite file of a recording: schema, queries, lock, commits and checks."""

@@ -1,0 +1,1 @@
+"""URDF files: parsed, checked, and read as the body of an arm."""
