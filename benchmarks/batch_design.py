@@ -21,8 +21,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.clear_errors import clear_errors
-from benchmarks.document import write_between
+from benchmarks.shared.clear_errors import clear_errors
+from benchmarks.shared.document import write_between
 from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
     SymmetricGaussianProcess,
 )

@@ -24,7 +24,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 import pinocchio as pin
 
-from benchmarks.document import write_between
+from benchmarks.shared.document import write_between
 from isotorque.learning.export.c_export import c_source
 from isotorque.learning.export.from_learner import torque_form
 from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork

@@ -23,9 +23,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.clear_errors import clear_errors
-from benchmarks.document import write_between
-from benchmarks.urdf_arms import EXAMPLE_ROBOTS, example_robots
+from benchmarks.shared.clear_errors import clear_errors
+from benchmarks.shared.document import write_between
+from benchmarks.shared.urdf_arms import EXAMPLE_ROBOTS, example_robots
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 from isotorque.symbolic.gravity.gravity_model import GravityModel

@@ -34,9 +34,9 @@ import numpy as np
 import pinocchio as pin
 import sympy
 
-from benchmarks.clear_errors import clear_errors
-from benchmarks.time_limit import OutOfTimeError, at_most
-from benchmarks.urdf_arms import Subject, subjects
+from benchmarks.shared.clear_errors import clear_errors
+from benchmarks.shared.time_limit import OutOfTimeError, at_most
+from benchmarks.shared.urdf_arms import Subject, subjects
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.gravity.potential import derive_potential
 from isotorque.symbolic.robots.kinematic_tree import KinematicTree, human_arm, planar_arm

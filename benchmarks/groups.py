@@ -25,7 +25,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from benchmarks.clear_errors import clear_errors
+from benchmarks.shared.clear_errors import clear_errors
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.gravity.potential import derive_potential

@@ -21,10 +21,10 @@ from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
-from benchmarks.clear_errors import clear_errors
-from benchmarks.document import write_between
-from benchmarks.time_limit import OutOfTimeError, at_most
-from benchmarks.urdf_arms import example_robots
+from benchmarks.shared.clear_errors import clear_errors
+from benchmarks.shared.document import write_between
+from benchmarks.shared.time_limit import OutOfTimeError, at_most
+from benchmarks.shared.urdf_arms import example_robots
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.groups.symmetry_group import group_structure

@@ -3,10 +3,10 @@
 Usage: python -m benchmarks.run_arms [--write] [--jobs 2] [ARM ...]
 
 The arms are the built-in ones, small ones with the features of well-known arms
-(`benchmarks.small_arms`) and, where the package example-robot-data is installed, the serial arms of
-it. Where a file is refused with options that would work (grippers to be locked), it is run again
-with exactly those. A run has to end with a report, exit status 0 or 1, within three minutes of
-processor time. ``--write`` puts the table into docs/robots.md.
+(`benchmarks.shared.small_arms`) and, where example-robot-data is installed, its serial arms. Where
+a file is refused with options that would work (grippers to be locked), it is run again with exactly
+those. A run has to end with a report, exit status 0 or 1, within three minutes of processor time.
+``--write`` puts the table into docs/robots.md.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from benchmarks.document import write_between
-from benchmarks.small_arms import SMALL_ARMS, write_arm
+from benchmarks.shared.document import write_between
+from benchmarks.shared.small_arms import SMALL_ARMS, write_arm
 from isotorque.symbolic.robots.load_robot import builtin_robots
 
 PAGE = Path(__file__).parents[1] / "docs" / "robots.md"

@@ -33,15 +33,15 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from benchmarks.clear_errors import clear_errors
-from benchmarks.compiled_aba import time_compiled_aba
-from benchmarks.simulation_peers import (
+from benchmarks.peers.compiled_aba import time_compiled_aba
+from benchmarks.peers.simulation_peers import (
     MUJOCO_STEP,
     check,
     mujoco_settle,
     near_starts,
     plain_settle,
 )
+from benchmarks.shared.clear_errors import clear_errors
 from isotorque.learning.arm import OutcomeKind
 from isotorque.learning.files.run_info import RunInfo
 from isotorque.learning.recordings.recorded_simulation import RecordedSimulation
@@ -52,7 +52,7 @@ from isotorque.symbolic.robots.load_robot import load_robot
 try:
     import mujoco
 
-    from benchmarks.mujoco_arm import mujoco_arm
+    from benchmarks.peers.mujoco_arm import mujoco_arm
 except ImportError:
     mujoco = None
 

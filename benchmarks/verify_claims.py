@@ -19,7 +19,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 
-from benchmarks.document import write_between
+from benchmarks.shared.document import write_between
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation

@@ -2,8 +2,8 @@
 
 import pytest
 
-from benchmarks.batch_tables import Row, equal_errors, samples_needed, sentence, tables
-from benchmarks.document import write_between
+from benchmarks.batch.tables import Row, equal_errors, samples_needed, sentence, tables
+from benchmarks.shared.document import write_between
 
 
 def row(learner, symmetries, samples, error, noise=0.0):

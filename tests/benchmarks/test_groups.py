@@ -2,7 +2,8 @@
 
 import pytest
 
-from benchmarks import batch, derive, groups
+from benchmarks import derive, groups
+from benchmarks.batch import __main__ as batch
 from benchmarks.groups import measure
 from isotorque.symbolic.common.errors import InputError
 

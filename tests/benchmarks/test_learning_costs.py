@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from sklearn.linear_model import LinearRegression
 
-from benchmarks.learning_contests import Bench, Contestant, per_item
-from benchmarks.learning_costs import Figure, Row, main, measure, table, take_turns
-from benchmarks.learning_peers import (
+from benchmarks.learning_costs.__main__ import Figure, Row, main, measure, table, take_turns
+from benchmarks.learning_costs.contests import Bench, Contestant, per_item
+from benchmarks.learning_costs.peers import (
     linear_regression,
     online_features,
     online_network,
     products,
 )
-from benchmarks.literal_map import ArrayMap, LiteralMap
+from benchmarks.peers.literal_map import ArrayMap, LiteralMap
 from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
 
 KINDS = (LiteralMap, ArrayMap)
@@ -100,8 +100,8 @@ def test_turns_are_interleaved_and_ratios_taken_within_them():
 
 
 def test_who_is_too_late_is_given_up_and_who_is_slow_skips_turns(monkeypatch):
-    monkeypatch.setattr("benchmarks.learning_costs.LIMIT", 0.05)
-    monkeypatch.setattr("benchmarks.learning_costs.PATIENCE", 0.02)
+    monkeypatch.setattr("benchmarks.learning_costs.__main__.LIMIT", 0.05)
+    monkeypatch.setattr("benchmarks.learning_costs.__main__.PATIENCE", 0.02)
     runs = []
 
     def endless():
@@ -113,7 +113,7 @@ def test_who_is_too_late_is_given_up_and_who_is_slow_skips_turns(monkeypatch):
         runs.append("slow")
         return per_item(lambda: None, 1)
 
-    monkeypatch.setattr("benchmarks.learning_contests.LEAST", 0.03)
+    monkeypatch.setattr("benchmarks.learning_costs.contests.LEAST", 0.03)
     found = take_turns(
         [
             Contestant("fast", lambda: 0.01),
@@ -154,7 +154,9 @@ def test_a_short_run_measures_everything(short):
 
 @pytest.mark.parametrize("options", [[], ["--json"]])
 def test_three_tables_are_printed(short, options, monkeypatch, capsys):
-    monkeypatch.setattr("benchmarks.learning_costs.measure", lambda *_: iter(short.items()))
+    monkeypatch.setattr(
+        "benchmarks.learning_costs.__main__.measure", lambda *_: iter(short.items())
+    )
     monkeypatch.setattr("sys.argv", ["learning_costs", "2r", *options])
     main()
     text = capsys.readouterr().out

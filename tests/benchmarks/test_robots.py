@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from benchmarks import robots
-from benchmarks.document import write_between
-from benchmarks.urdf_arms import example_robots
+from benchmarks.shared.document import write_between
+from benchmarks.shared.urdf_arms import example_robots
 from isotorque.symbolic.gravity.potential import derive_potential
 from isotorque.symbolic.robots.kinematic_tree import KinematicTree
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries

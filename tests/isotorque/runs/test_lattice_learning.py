@@ -14,7 +14,7 @@ from isotorque.runs.lattice_learning import learn_from_lattice
 from isotorque.runs.options.run_options import ArmOptions, RunOptions
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
-from tests.isotorque.cli.test_kills import killed, recorded, start
+from tests.isotorque.cli.every_command.test_kills import killed, recorded, start
 
 GUIDED = ArmOptions(physics="guided")
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks.small_arms import write_arm
+from benchmarks.shared.small_arms import write_arm
 from isotorque.cli.main import status
 
 TABLETOP = """<robot name="tabletop"><link name="base"/><link name="l1"><inertial>

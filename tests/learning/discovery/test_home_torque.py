@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks.small_arms import write_arm
+from benchmarks.shared.small_arms import write_arm
 from isotorque.learning.arm import OutcomeKind
 from isotorque.learning.discovery.home_torque import (
     find_home_torque,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks.literal_map import LiteralMap
+from benchmarks.peers.literal_map import LiteralMap
 from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
 from isotorque.symbolic.common.errors import InputError
 from tests.learning.learners import planar_arm

@@ -174,7 +174,7 @@ def test_motion_along_a_free_direction_runs_out_as_it_should():
 @pytest.mark.parametrize("name", ["2r", "3r", "ur5"])
 def test_outcomes_equal_mujocos(name):
     mujoco = pytest.importorskip("mujoco")
-    from benchmarks.mujoco_arm import mujoco_arm
+    from benchmarks.peers.mujoco_arm import mujoco_arm
 
     robot = load_robot(name)
     arm = SimulatedArm(robot)
@@ -207,7 +207,7 @@ def test_outcomes_equal_mujocos(name):
 @pytest.mark.slow
 def test_sticking_equals_mujocos():
     mujoco = pytest.importorskip("mujoco")
-    from benchmarks.mujoco_arm import mujoco_arm
+    from benchmarks.peers.mujoco_arm import mujoco_arm
 
     robot = load_robot("2r")
     arm = SimulatedArm(robot, "geared", coulomb=0.3, limits="none")

@@ -34,15 +34,15 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from sklearn.exceptions import ConvergenceWarning
 
-from benchmarks.clear_errors import clear_errors
-from benchmarks.learning_contests import (
+from benchmarks.learning_costs.contests import (
     Bench,
     Contestant,
     fit_contest,
     prediction_contests,
     update_contest,
 )
-from benchmarks.time_limit import OutOfTimeError, at_most
+from benchmarks.shared.clear_errors import clear_errors
+from benchmarks.shared.time_limit import OutOfTimeError, at_most
 
 ROBOTS = ("2r", "3r", "ur5")
 KNOWN = 400  # samples learned before updates are timed

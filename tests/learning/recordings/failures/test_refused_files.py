@@ -20,7 +20,7 @@ from isotorque.learning.recordings.recording_reader import RecordingReader
 from isotorque.symbolic.common.errors import InputError
 from tests.learning.recordings.recording_tools import INFO, ToyArm, explore, files, tables
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 def record(path, steps=12, info=INFO):

@@ -32,10 +32,10 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from sklearn.exceptions import ConvergenceWarning
 
-from benchmarks.batch_learners import learners, runs
-from benchmarks.batch_tables import Row, equal_errors, tables
-from benchmarks.clear_errors import clear_errors
-from benchmarks.document import write_between
+from benchmarks.batch.learners import learners, runs
+from benchmarks.batch.tables import Row, equal_errors, tables
+from benchmarks.shared.clear_errors import clear_errors
+from benchmarks.shared.document import write_between
 from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.sampling.lattice import lattice_samples
 from isotorque.learning.sampling.sampling_region import SamplingRegion
@@ -48,7 +48,7 @@ from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from isotorque.verify.models.paper_targets import paper_targets
 
-PAGE = Path(__file__).parents[1] / "docs" / "batch.md"
+PAGE = Path(__file__).parents[2] / "docs" / "batch.md"
 DENSE = 1500
 #: Samples tried, by robot and symmetries.
 SAMPLES = {

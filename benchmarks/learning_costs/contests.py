@@ -14,10 +14,10 @@ import numpy as np
 import pinocchio as pin
 from sklearn.base import clone
 
-from benchmarks import learning_peers as peers
-from benchmarks.batch_learners import kernel_ridge, multilayer
-from benchmarks.literal_map import ArrayMap, LiteralMap
+from benchmarks.batch.learners import kernel_ridge, multilayer
+from benchmarks.learning_costs import peers
 from benchmarks.online.learners import joint, replayed, replayed_3r
+from benchmarks.peers.literal_map import ArrayMap, LiteralMap
 from isotorque.learning.learners.local_linear.local_linear_map import LocalLinearMap
 from isotorque.learning.learners.local_linear.topological_map import TopologicalMap
 from isotorque.learning.learners.registry import LearningTask, learner_by_name

@@ -14,7 +14,7 @@ import typer
 
 from isotorque.cli.main import app, status
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 PACKAGES = ("isotorque", "learning", "symbolic", "verify")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 COMMANDS = typer.main.get_command(app).commands

@@ -11,7 +11,7 @@ import pytest
 from isotorque.learning.recordings.recording_reader import RecordingReader
 from tests.learning.recordings.recording_tools import files, tables
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 def start(path, result, steps):

@@ -21,7 +21,7 @@ from isotorque.learning.recordings.recording_error import RecordingError, transl
 from isotorque.learning.recordings.recording_reader import RecordingReader
 from tests.learning.recordings.recording_tools import INFO, NAMES, ToyArm, explore, tables
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 COMMANDS = ["apply", "apply", "play", "home"] * 100
 
 
@@ -60,7 +60,7 @@ def test_a_process_that_may_not_write_more(tmp_path, whole):
     path = tmp_path / "run.sqlite"
     script = (
         "import sys; from pathlib import Path\n"
-        "from tests.learning.recordings.test_recording_disk import resumed\n"
+        "from tests.learning.recordings.failures.test_full_disks import resumed\n"
         "resumed(Path(sys.argv[1]))\n"
     )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.relations_samples import Samples, Truth, level_set_samples, stable_samples, truth
+from benchmarks.relations.samples import Samples, Truth, level_set_samples, stable_samples, truth
 from isotorque.learning.relations.identification.identify import identify
 from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.relations.learned_symmetries import LearnedSymmetries

@@ -24,9 +24,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from benchmarks.relations_rows import SECONDS, Case, Row, run
+from benchmarks.relations.rows import SECONDS, Case, Row, run
 
-PAGE = Path(__file__).parents[1] / "docs" / "relations.md"
+PAGE = Path(__file__).parents[2] / "docs" / "relations.md"
 BEGIN, END = "<!-- begin: python -m benchmarks.relations --write -->", "<!-- end -->"
 
 NOISY = "95 % of seeds, precision 0.99"

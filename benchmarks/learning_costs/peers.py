@@ -15,7 +15,7 @@ from sklearn.neural_network import MLPRegressor
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import FunctionTransformer
 
-from benchmarks.batch_learners import circles
+from benchmarks.batch.learners import circles
 from isotorque.learning.learners.augmented_samples import SymmetricSamples
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 

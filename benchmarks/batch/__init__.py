@@ -1,0 +1,1 @@
+"""Batch learning from lattices: test error with and without symmetries."""

@@ -1,0 +1,1 @@
+"""Times of the learners: updates, predictions and batch fits, beside other learners."""

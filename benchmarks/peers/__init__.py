@@ -1,0 +1,1 @@
+"""Other programs that the toolkit is measured beside."""

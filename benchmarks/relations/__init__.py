@@ -1,0 +1,1 @@
+"""Relation learning from recordings: samples and torques that the whole group takes."""
