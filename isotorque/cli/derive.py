@@ -33,7 +33,6 @@ def derive(
     """Derive the gravity torque, checked against Pinocchio every time."""
     from isotorque.symbolic.common.files import write_whole
     from isotorque.symbolic.gravity.c_source import gravity_c
-    from isotorque.symbolic.gravity.casadi_function import gravity_casadi
     from isotorque.symbolic.gravity.gravity_model import GravityModel
     from isotorque.symbolic.gravity.readable import gravity_latex, gravity_sympy, gravity_text
 
@@ -45,6 +44,8 @@ def derive(
         write_whole(c, gravity_c(gravity))
         say(f"C source: {c}", quiet=quiet or json)
     if casadi is not None:
+        from isotorque.symbolic.gravity.casadi_function import gravity_casadi
+
         write_whole(casadi, gravity_casadi(gravity).serialize())
         say(
             f"CasADi function (read it with casadi.Function.deserialize): {casadi}",

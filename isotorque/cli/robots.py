@@ -8,7 +8,7 @@ from isotorque.cli.output import emit_json
 
 def robots(json: Json = False, quiet: Quiet = False) -> None:
     """List the built-in robots."""
-    from isotorque.symbolic.robots.load_robot import builtin_robots
+    from isotorque.symbolic.robots.builtin_robots import builtin_robots
 
     known = builtin_robots()
     if json:

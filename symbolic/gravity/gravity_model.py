@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -63,8 +65,9 @@ class GravityModel:
     joint_names : tuple of str
         One name per joint, in the order of q.
     max_error_vs_pinocchio : float or None
-        Largest difference found between the torque derived here and Pinocchio's of the robot as
-        it was read, before angles were snapped [N m]; None where there is no robot to ask.
+        Largest difference found between the torque derived here, in both forms, and Pinocchio's of
+        the robot as it was read, before angles were snapped [N m]; None where there is no robot
+        to ask.
 
     Raises
     ------
@@ -78,7 +81,8 @@ class GravityModel:
     The normal form ``potential`` is for reading and algebra; numbers are computed by the compiled
     recursion along the chain, which is faster for one configuration on every arm, and for many at
     once on all but those with no more frequencies than joints, where it is on a par
-    (benchmarks/gravity_forms.py). Both forms are checked, and agree to 1e-12.
+    (benchmarks/gravity_forms.py). Both forms are checked against Pinocchio, the
+    normal form when the model is made, the recursion before its first answer.
 
     References
     ----------
@@ -100,9 +104,8 @@ class GravityModel:
         self.tree: KinematicTree = source.tree if isinstance(source, Robot) else source
         self.name: str = source.name if isinstance(source, Robot) else "kinematic tree"
         self.potential: TrigonometricPolynomial = derive_potential(self.tree)
-        self.max_error_vs_pinocchio: float | None = None
-        if isinstance(source, Robot):
-            self.max_error_vs_pinocchio = self._check(source)
+        self._reference = _PinocchioTorques.of(source) if isinstance(source, Robot) else None
+        self._potential_error = self._check(self.potential.gradient)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -188,30 +191,53 @@ class GravityModel:
     @cached_property
     def chain(self) -> GravityChain:
         """The tree reduced to what the torque depends on; raises InputError if it has symbols."""
-        return GravityChain.of(self.tree)
+        chain = GravityChain.of(self.tree)
+        self._check(chain.torque)
+        return chain
 
-    def _check(self, robot: Robot) -> float:
-        """Compare both forms with Pinocchio; return the largest difference [N m]."""
-        rng = np.random.default_rng(0)
-        q = rng.uniform(-np.pi, np.pi, (_CHECKED_CONFIGURATIONS, self.n))
-        data = robot.source_model.createData()
-        truth = np.array(
-            [
-                pin.computeGeneralizedGravity(robot.source_model, data, x)
-                for x in robot.source_configuration(q)
-            ]
-        )
-        errors = [np.abs(g - truth) for g in (self.potential.gradient(q), self.torque(q))]
-        error = np.maximum(*errors).max(axis=0)
+    @cached_property
+    def max_error_vs_pinocchio(self) -> float | None:
+        """Largest difference of both forms from Pinocchio [N m]; None without a robot."""
+        if self._potential_error is None:
+            return None
+        recursion_error = self._check(self.chain.torque)
+        assert recursion_error is not None
+        return max(self._potential_error, recursion_error)
+
+    def _check(self, torque: Callable[[Floats], Floats]) -> float | None:
+        """Compare one form with Pinocchio; return the largest difference [N m]."""
+        if self._reference is None:
+            return None
+        truth = self._reference.torques
+        error = np.abs(torque(self._reference.q) - truth).max(axis=0)
         # A balanced arm feels almost nothing, but Pinocchio still rounds all that cancels.
         rounding = RELATIVE_TOLERANCE * np.abs(truth).max() + self.rounding
-        allowed = robot.snap_bound + rounding
+        allowed = self._reference.snap_bound + rounding
         worst = int(np.argmax(error - allowed))
         if not error[worst] <= allowed[worst]:
             raise GravityMismatch(
-                robot.name, self.joint_names[worst], float(error[worst]), float(allowed[worst])
+                self.name, self.joint_names[worst], float(error[worst]), float(allowed[worst])
             )
         return float(error.max())
+
+
+@dataclass(frozen=True)
+class _PinocchioTorques:
+    """Pinocchio's torques (m, n) [N m] of a robot as it was read, at m angles ``q`` [rad]."""
+
+    q: Floats
+    torques: Floats
+    snap_bound: Floats
+
+    @classmethod
+    def of(cls, robot: Robot) -> _PinocchioTorques:
+        rng = np.random.default_rng(0)
+        q = rng.uniform(-np.pi, np.pi, (_CHECKED_CONFIGURATIONS, robot.n))
+        model, data = robot.source_model, robot.source_model.createData()
+        torques = [
+            pin.computeGeneralizedGravity(model, data, x) for x in robot.source_configuration(q)
+        ]
+        return cls(q, np.array(torques), robot.snap_bound)
 
 
 def _torque_scale(tree: KinematicTree) -> float:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import sympy
 from flint import fmpq
 
-from isotorque.symbolic.polynomials.coefficients import is_zero
+from isotorque.symbolic.polynomials.coefficients import is_zero, to_sympy
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.symbolic.robots.kinematic_tree import Entries, KinematicTree
 
@@ -49,7 +48,7 @@ def derive_potential(tree: KinematicTree) -> TrigonometricPolynomial:
     """
     tree = tree.exact()
     n = tree.n
-    half = fmpq(1, 2) if isinstance(tree.masses[0], fmpq) else sympy.Rational(1, 2)
+    half = fmpq(1, 2) if isinstance(tree.masses[0], fmpq) else to_sympy(fmpq(1, 2))
     total: dict[tuple[int, ...], Any] = {}
     zero = half - half
     subtree = [zero + m for m in tree.masses]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-
-import sympy
+from typing import TYPE_CHECKING, Any
 
 from isotorque.symbolic.gravity.gravity_model import GravityModel
-from isotorque.symbolic.polynomials.coefficients import is_zero, to_float
+from isotorque.symbolic.polynomials.coefficients import is_expression, is_zero, to_float
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
+
+if TYPE_CHECKING:
+    import sympy
 
 
 def gravity_text(model: GravityModel) -> str:
@@ -119,6 +121,8 @@ def gravity_sympy(
     >>> gravity_sympy(GravityModel(planar_arm(2)))[1]
     c2*g*m2*cos(q1 + q2)
     """
+    import sympy
+
     q = tuple(symbols or sympy.symbols(f"q1:{model.n + 1}", real=True))
     components = model.components
     if not (exact or model.is_symbolic):
@@ -139,9 +143,11 @@ def _polynomial_latex(f: TrigonometricPolynomial, names: Sequence[str]) -> str:
     return text or "0"
 
 
-def _coefficient_latex(value: object) -> tuple[str, str]:
+def _coefficient_latex(value: Any) -> tuple[str, str]:
     """Return sign and absolute value of a coefficient."""
-    if isinstance(value, sympy.Basic):
+    if is_expression(value):
+        import sympy
+
         factored = sympy.factor_terms(value)
         negative = factored.could_extract_minus_sign()
         size = sympy.latex(-factored if negative else factored)

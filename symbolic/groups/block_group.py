@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
 from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.common.connected_components import connected_components
 from isotorque.symbolic.groups.symmetry_group import DirectFactor, SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SAME_ANGLE, SymmetryRelation
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
@@ -181,7 +181,7 @@ def _commuting_orders(generators: tuple[SymmetryRelation, ...], order: int) -> t
     tied = np.array([[not (g @ h).same_as(h @ g) for h in generators] for g in generators])
     if not count:
         return (order,)
-    _, label = connected_components(tied, directed=False)
+    label = connected_components(tied)
     orders = []
     for part in np.unique(label):
         own = [g for g, here in zip(generators, label, strict=True) if here == part]

@@ -6,10 +6,10 @@ import itertools
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from isotorque.symbolic.common.angles import circular_distance
 from isotorque.symbolic.common.arrays import Floats, Integers
+from isotorque.symbolic.common.connected_components import connected_components
 from isotorque.symbolic.groups.affine_map_index import SAME_OFFSET
 
 
@@ -59,7 +59,8 @@ def independent_blocks(A: Floats, d: Floats) -> list[TorusBlock]:
     if r == 0:
         return []
     coupled = np.any(A != 0, axis=0)
-    count, label = connected_components(coupled, directed=False)
+    label = connected_components(coupled)
+    count = int(label.max()) + 1
     parts = [np.flatnonzero(label == i) for i in range(count)]
     kinds = np.column_stack([_kinds(A[:, part[:, None], part], d[:, part]) for part in parts])
     groups = [[i] for i in range(count)]

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from flint import fmpz_mat
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
+
+from isotorque.symbolic.common.connected_components import connected_components
 
 IntMatrix = NDArray[np.int64]
 
@@ -132,7 +133,7 @@ def dependency_components(K: IntMatrix) -> NDArray[np.int64]:
     if rows:
         used = coordinates_in(K, rows)[0] != 0  # fundamental circuits of the basis
         circuits = np.unique(used, axis=0).astype(np.int64)
-        part = connected_components(circuits.T @ circuits > 0, directed=False)[1]
+        part = connected_components(circuits.T @ circuits > 0)
         touched = used.any(axis=1)
         label[touched] = part[used[touched].argmax(axis=1)]
     _, first, inverse = np.unique(label, return_index=True, return_inverse=True)

@@ -2,25 +2,38 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import sympy
 from flint import fmpq, fmpz
 from numpy.typing import ArrayLike, NDArray
 
 from isotorque.symbolic.common.errors import InputError
+
+if TYPE_CHECKING:
+    import sympy
 
 Coefficients = NDArray[Any]
 
 _WHERE = "trigonometric polynomial"
 
 
+def is_expression(value: Any) -> bool:
+    """Say whether a coefficient is a SymPy expression.
+
+    SymPy is imported where expressions are made: before that, nothing is one, and arms of numbers
+    do not wait for it.
+    """
+    module = sys.modules.get("sympy")
+    return module is not None and isinstance(value, module.Basic)
+
+
 def is_zero(value: Any) -> bool:
     """Say whether a float, rational or SymPy coefficient is exactly zero."""
-    if isinstance(value, sympy.Basic):
-        return bool(value.is_zero) or (not value.is_Atom and sympy.expand(value) == 0)
+    if is_expression(value):
+        return bool(value.is_zero) or (not value.is_Atom and value.expand() == 0)
     return bool(value == 0)
 
 
@@ -51,7 +64,7 @@ def coefficient_arrays(m: int | None, *values: ArrayLike) -> tuple[Coefficients,
         floats = tuple(array.astype(np.float64) for array in arrays)
     else:
         entries = [x for array in arrays for x in array.tolist()]
-        if any(isinstance(x, sympy.Basic) for x in entries):
+        if any(is_expression(x) for x in entries):
             return tuple(_converted(array, to_sympy) for array in arrays)
         if not any(isinstance(x, float) for x in entries):
             return tuple(_converted(array, _to_rational) for array in arrays)
@@ -96,6 +109,8 @@ def to_float(value: Any) -> float:
 
 def to_sympy(value: Any) -> sympy.Expr:
     """Return a coefficient as a SymPy expression, exactly."""
+    import sympy
+
     if isinstance(value, fmpq):
         return sympy.Rational(int(value.p), int(value.q))
     return sympy.sympify(value)

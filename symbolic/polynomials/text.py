@@ -5,10 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import sympy
 from numpy.typing import NDArray
 
-from isotorque.symbolic.polynomials.coefficients import Coefficients, is_zero, to_float
+from isotorque.symbolic.polynomials.coefficients import (
+    Coefficients,
+    is_expression,
+    is_zero,
+    to_float,
+)
 
 
 def polynomial_text(
@@ -40,7 +44,9 @@ def _phase_text(k: list[int], names: tuple[str, ...]) -> str:
 
 
 def _term_text(value: Any, wave: str) -> str:
-    if isinstance(value, sympy.Basic):
+    if is_expression(value):
+        import sympy
+
         factor = sympy.factor_terms(value)
         if wave and abs(factor) == 1:
             return wave if factor == 1 else f"-{wave}"

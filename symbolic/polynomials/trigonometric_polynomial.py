@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import sympy
 from flint import fmpq
 from numpy.typing import ArrayLike, NDArray
 
@@ -21,6 +20,9 @@ from isotorque.symbolic.polynomials.coefficients import (
 )
 from isotorque.symbolic.polynomials.frequencies import folded, frequency_rows
 from isotorque.symbolic.polynomials.text import polynomial_text
+
+if TYPE_CHECKING:
+    import sympy
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,6 +249,8 @@ class TrigonometricPolynomial:
 
     def to_sympy(self, symbols: tuple[sympy.Symbol, ...] | None = None) -> sympy.Expr:
         """Return the polynomial as a SymPy expression in ``symbols`` (default: the names)."""
+        import sympy
+
         q = symbols or sympy.symbols(self.names, real=True)
         total = sympy.Integer(0)
         for k, a, b in zip(self.frequencies.tolist(), self.cos, self.sin, strict=True):

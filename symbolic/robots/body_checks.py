@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from isotorque.symbolic.common.errors import InputError
-from isotorque.symbolic.robots.arm_body import ArmBody
+
+if TYPE_CHECKING:
+    from isotorque.symbolic.robots.arm_body import ArmBody
 
 LARGEST = 1e50
 """No number of an arm is that large; squares of products of three still fit into a double."""

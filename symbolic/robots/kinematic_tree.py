@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import sympy
 from flint import fmpq
 from numpy.typing import NDArray
 
@@ -186,6 +185,8 @@ def planar_arm(n: int) -> KinematicTree:
     >>> planar_arm(2).masses
     array([m1, m2], dtype=object)
     """
+    import sympy
+
     mass = sympy.symbols(f"m1:{n + 1}", positive=True)
     length = sympy.symbols(f"l1:{n + 1}", positive=True)
     centre = sympy.symbols(f"c1:{n + 1}", positive=True)
@@ -230,6 +231,8 @@ def human_arm() -> KinematicTree:
     >>> human_arm().axes[0]
     array([1, 0, 0], dtype=object)
     """
+    import sympy
+
     arm = planar_arm(2)
     zero, one = sympy.Integer(0), sympy.Integer(1)
     eye = np.array([[one if i == j else zero for j in range(3)] for i in range(3)], dtype=object)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib.resources import files
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import IO, Any
 
 import numpy as np
 import pinocchio as pin
@@ -17,6 +16,7 @@ from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.robot_options import RobotOptions
 from isotorque.symbolic.robots.arm_body import ArmBody
 from isotorque.symbolic.robots.body_checks import check_body
+from isotorque.symbolic.robots.builtin_robots import BUILT_IN, builtin_file
 from isotorque.symbolic.robots.kinematic_tree import KinematicTree
 from isotorque.symbolic.robots.mass_plausibility import bodies, check_masses, moving_links
 from isotorque.symbolic.robots.robot_selection import (
@@ -31,25 +31,8 @@ from isotorque.symbolic.robots.urdf.urdf_file import Urdf, parse_urdf, urdf_text
 
 Array = NDArray[np.float64]
 
-_BUILTIN = {
-    "2r": "the paper's planar arm: two uniform rods of 5 kg, 0.25 m, gravity in the plane",
-    "3r": "the paper's simplified human arm: 5 kg in the hand, 0.25 m links",
-    "pendulum": "one uniform rod of 5 kg, 0.25 m on a horizontal axis",
-    "4r-planar": "four uniform rods of 2 kg, 0.25 m with parallel horizontal axes",
-    "ur5": "Universal Robots UR5, idealised inertias of ROS's ur_description",
-    "panda": "Franka Emika Panda without hand, inertias identified by Gaz et al. 2019",
-}
-
 STANDARD_INPUT = "-"
 """The robot that is read from standard input."""
-
-
-class BuiltinRobot(NamedTuple):
-    """A robot that `load_robot` knows by name: name, number of joints, description."""
-
-    name: str
-    joints: int
-    description: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,26 +118,6 @@ class Robot:
             else:
                 out[..., joint.idx_q] = angle
         return out
-
-
-def builtin_robots() -> tuple[BuiltinRobot, ...]:
-    """Return name, number of joints and description of each built-in robot.
-
-    Examples
-    --------
-    >>> for robot in builtin_robots():
-    ...     print(robot.name, robot.joints)
-    2r 2
-    3r 3
-    pendulum 1
-    4r-planar 4
-    ur5 6
-    panda 7
-    """
-    return tuple(
-        BuiltinRobot(name, _moving_joints(parse_urdf(_builtin_file(name), name)), description)
-        for name, description in _BUILTIN.items()
-    )
 
 
 def load_robot(
@@ -249,7 +212,7 @@ def load_robot(
         links = moving_links(urdf)
         if options.snap:
             body, snaps = snap_urdf(urdf, as_read.joint_names)
-    known = not isinstance(spec, pin.Model) and options.spec in _BUILTIN
+    known = not isinstance(spec, pin.Model) and options.spec in BUILT_IN
     warnings = () if known else check_masses(links, body, where, options.allow_massless)
     bound = torque_difference_bound(as_read.tree(), body.tree()) if snaps else np.zeros(body.n)
     return Robot(
@@ -293,12 +256,12 @@ def _checked_body(model: pin.Model, where: str) -> ArmBody:
 
 def _read(where: str) -> tuple[str, str, bytes]:
     """Return built-in name (or nothing), what to call the file in errors, and its contents."""
-    if where in _BUILTIN:
-        return where, where, _builtin_file(where)
+    if where in BUILT_IN:
+        return where, where, builtin_file(where)
     if where == STANDARD_INPUT:
         return "", "standard input", _standard_input(sys.stdin)
     path = Path(where)
-    accepted = f"a URDF file or one of {', '.join(_BUILTIN)}"
+    accepted = f"a URDF file or one of {', '.join(BUILT_IN)}"
     try:
         if not path.exists():
             raise InputError(where or "robot", "file", repr(where) + " (not found)", accepted)
@@ -316,14 +279,6 @@ def _read(where: str) -> tuple[str, str, bytes]:
 def _standard_input(stream: IO[str]) -> bytes:
     """Return all that comes from a stream, which can be read but once."""
     return stream.buffer.read()  # type: ignore[attr-defined]
-
-
-def _builtin_file(name: str) -> bytes:
-    return files("isotorque.symbolic").joinpath("robot_files", f"{name}.urdf").read_bytes()
-
-
-def _moving_joints(urdf: Urdf) -> int:
-    return sum(joint.moves for joint in urdf.joints)
 
 
 def _pinocchio_model(urdf: Urdf, where: str) -> pin.Model:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import sympy
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
+from isotorque.symbolic.common.connected_components import connected_components
 from isotorque.symbolic.groups.block_group import BlockGroup
 from isotorque.symbolic.groups.product_group import ProductGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
@@ -67,7 +66,7 @@ def frequency_blocks(K: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     [array([0, 2]), array([1])]
     """
     touched = np.unique(K != 0, axis=0).astype(np.int64)
-    _, label = connected_components(touched.T @ touched > 0, directed=False)
+    label = connected_components(touched.T @ touched > 0)
     active = np.flatnonzero(touched.any(axis=0))
     blocks = [active[label[active] == part] for part in np.unique(label[active])]
     return sorted(blocks, key=lambda joints: int(joints[0]))
@@ -92,6 +91,8 @@ def specialised(potential: TrigonometricPolynomial) -> TrigonometricPolynomial:
     """
     if not potential.is_symbolic:
         return potential.to_float()
+    import sympy
+
     symbols = sorted(
         {x for c in (*potential.cos, *potential.sin) for x in sympy.sympify(c).free_symbols},
         key=str,

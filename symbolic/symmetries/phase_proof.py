@@ -7,12 +7,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import sympy
 from flint import acb, arb, ctx, fmpq, fmpq_mat, fmpz_mat
 from numpy.typing import NDArray
 
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
-from isotorque.symbolic.polynomials.coefficients import is_zero
+from isotorque.symbolic.polynomials.coefficients import is_expression, is_zero
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 
 if TYPE_CHECKING:
@@ -165,6 +164,6 @@ def _product(factors: list[Gauss], exponents: list[int]) -> Gauss:
 
 
 def _equal(a: Gauss, b: Gauss) -> bool:
-    if isinstance(a[0], sympy.Basic) or isinstance(b[0], sympy.Basic):
-        return is_zero(sympy.sympify(a[0] - b[0])) and is_zero(sympy.sympify(a[1] - b[1]))
+    if is_expression(a[0]) or is_expression(b[0]):
+        return is_zero(a[0] - b[0]) and is_zero(a[1] - b[1])
     return bool(a[0] == b[0] and a[1] == b[1])

@@ -9,7 +9,8 @@ from isotorque.runs.options.recorded_robot import as_recorded
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.files import write_whole
 from isotorque.symbolic.common.robot_options import RobotOptions
-from isotorque.symbolic.robots.load_robot import Robot, builtin_robots, load_robot, robot_file
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
+from isotorque.symbolic.robots.load_robot import Robot, load_robot, robot_file
 
 ROBOT_FILE = "robot.urdf"
 

@@ -8,9 +8,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.c_source import gravity_c
 from isotorque.symbolic.gravity.gravity_model import GravityMismatch, GravityModel
+from isotorque.symbolic.gravity.recursion import GravityChain
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
 from isotorque.symbolic.robots.kinematic_tree import human_arm, planar_arm
-from isotorque.symbolic.robots.load_robot import builtin_robots, load_robot
+from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.verify.testing.strategies import configurations, kinematic_trees, models, robots
 
 BUILT_IN = [robot.name for robot in builtin_robots()]
@@ -131,6 +134,25 @@ def test_a_torque_that_is_not_a_number_is_a_mismatch():
     model.gravity.linear = np.array([0.0, 0.0, np.nan])
     with pytest.raises(GravityMismatch):
         GravityModel(dataclasses.replace(robot, source_model=model))
+
+
+def test_a_recursion_that_is_wrong_gives_no_answer(monkeypatch):
+    """It is checked before its first answer, whichever that is."""
+    right = GravityChain.of
+    heavier = classmethod(
+        lambda cls, tree: right(dataclasses.replace(tree, masses=tree.masses * [1.0, 1.001]))
+    )
+    monkeypatch.setattr(GravityChain, "of", heavier)
+    for answer in (
+        lambda gravity: gravity.torque([0.0, 0.0]),
+        lambda gravity: gravity.stiffness([0.0, 0.0]),
+        lambda gravity: gravity.max_error_vs_pinocchio,
+        lambda gravity: gravity.chain,
+        gravity_c,
+    ):
+        gravity = GravityModel(load_robot("2r"))
+        with pytest.raises(GravityMismatch, match=r"joint 'shoulder' is 0\.01"):
+            answer(gravity)
 
 
 @pytest.fixture

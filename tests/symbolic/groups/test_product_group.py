@@ -14,7 +14,8 @@ from isotorque.symbolic.gravity.potential import derive_potential
 from isotorque.symbolic.groups.symmetry_group import LARGEST_LIST, SymmetryGroup, close
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
-from isotorque.symbolic.robots.load_robot import builtin_robots, load_robot
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
+from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries import frequency_support as support
 from isotorque.symbolic.symmetries.approximate_symmetries import maximal_groups
 from isotorque.symbolic.symmetries.exact_symmetries import frequency_blocks

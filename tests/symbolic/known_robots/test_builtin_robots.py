@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from isotorque.symbolic.gravity.potential import derive_potential
-from isotorque.symbolic.robots.load_robot import builtin_robots, load_robot
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
+from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from tests.symbolic.robots.test_load_robot import FILES, error_beyond_bound, gravity
 from tests.symbolic.robots.urdf.urdf_strategies import angles

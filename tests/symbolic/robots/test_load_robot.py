@@ -15,7 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from isotorque.symbolic.common.errors import InputError
-from isotorque.symbolic.robots.load_robot import Robot, builtin_robots, load_robot
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
+from isotorque.symbolic.robots.load_robot import Robot, load_robot
 from isotorque.symbolic.robots.urdf.urdf_file import urdf_text
 from tests.symbolic.robots.urdf.urdf_strategies import angles, rounded_right_angles, urdfs
 

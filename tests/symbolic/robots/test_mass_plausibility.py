@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.robots.arm_body import ArmBody
-from isotorque.symbolic.robots.load_robot import builtin_robots, load_robot
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
+from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.robots.mass_plausibility import feels_gravity
 from isotorque.symbolic.robots.urdf.urdf_elements import UrdfLink
 from isotorque.symbolic.robots.urdf.urdf_file import Urdf, parse_urdf, urdf_text
