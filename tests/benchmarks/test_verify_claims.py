@@ -33,12 +33,7 @@ def test_four_hundred_claims_are_judged_rightly():
 
 @pytest.mark.slow
 def test_eight_thousand_claims_are_judged_rightly():
-    found = faults(run(12, 8000))
-    # what is only *tested* is sampled: a few lies with huge entries in A, allowed nearly the
-    # largest error there is, stay unseen (4 of the 100,000 of docs/theory.md)
-    missed = sum(count for (_, kind), count in found.items() if kind == "missed lie")
-    assert missed <= 8
-    assert all(kind == "missed lie" for _, kind in found)
+    assert faults(run(12, 8000)) == {}
 
 
 @pytest.fixture(scope="module")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpq_mat, fmpz_mat
 from numpy.typing import ArrayLike
 
 from isotorque.symbolic.common.errors import InputError
@@ -66,8 +67,22 @@ def times(rows: Sequence[Sequence[Exact]], matrix: list[list[Exact]]) -> list[tu
         if max(largest, 1) * max(sum(map(abs, entries)), 1) < 2**62:  # neither does a sum
             factor = np.array(matrix, dtype=np.int64)
             return [tuple(row) for row in (np.array(rows, dtype=np.int64) @ factor).tolist()]
-    columns = list(zip(*matrix, strict=True))
-    return [tuple(exact(_dot(row, column)) for column in columns) for row in rows]
+        whole = fmpz_mat([list(row) for row in rows]) * fmpz_mat(matrix)
+        return [tuple(map(int, row)) for row in whole.tolist()]
+    product = fmpq_mat([list(row) for row in rows]) * fmpq_mat(matrix)
+    return [tuple(map(exact, row)) for row in product.tolist()]
+
+
+def over_one_denominator(matrix: list[list[Exact]]) -> tuple[list[list[int]], int]:
+    """Return integers and what all of them are to be divided by.
+
+    Examples
+    --------
+    >>> over_one_denominator([[1, exact(0.25)], [exact(1.5), 0]])
+    ([[4, 1], [6, 0]], 4)
+    """
+    divisor = math.lcm(*(int(x.q) for row in matrix for x in row if isinstance(x, fmpq)))
+    return [[int(x * divisor) for x in row] for row in matrix], divisor
 
 
 def maps(matrix: list[list[Exact]], offset: list[Exact], point: Sequence[Exact]) -> list[Exact]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from flint import acb, arb, ctx
+from flint import acb, arb, ctx, fmpq
 from numpy.typing import NDArray
 
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
@@ -14,8 +14,10 @@ from isotorque.verify.relations.exact_numbers import (
     PRECISION_BITS,
     Exact,
     angle,
+    exact,
     exact_vector,
     nearest,
+    over_one_denominator,
     phase,
     times,
     upper,
@@ -34,8 +36,10 @@ class Residual:
 
     Attributes
     ----------
-    frequencies : list of tuples
-        Each f once, exactly: integers, or rationals where ``A^T k`` is none of integers.
+    waves : list of tuples
+        Each f once, as integers over one ``divisor``.
+    divisor : int
+        1 unless ``A^T k`` is none of integers.
     cos, sin : lists of lists of arb
         Amplitudes of joint i for frequency number j, ``cos[j][i]`` [N m].
 
@@ -48,7 +52,8 @@ class Residual:
     """
 
     n: int
-    frequencies: list[tuple[Exact, ...]]
+    waves: list[tuple[int, ...]]
+    divisor: int
     cos: list[list[arb]]
     sin: list[list[arb]]
 
@@ -61,20 +66,29 @@ class Residual:
         potential: TrigonometricPolynomial,
     ) -> Residual:
         """Expand the error of a relation under an exact potential."""
-        waves: dict[tuple[Exact, ...], list[list[arb]]] = {}
+        waves: dict[tuple[int, ...], list[list[arb]]] = {}
         rows = potential.frequencies.tolist()
+        whole, divisor = over_one_denominator(A)
         with ctx.workprec(PRECISION_BITS):
             offsets = [angle(x) for x in d]
             for k, image, a, b in zip(
-                rows, times(rows, A), potential.cos, potential.sin, strict=True
+                rows, times(rows, whole), potential.cos, potential.sin, strict=True
             ):
                 at = phase(k, offsets)
                 c, s, a, b = at.cos(), at.sin(), arb(a), arb(b)
                 _add(waves, image, b * c - a * s, -(a * c + b * s), k)
-                _add(waves, tuple(k), b, -a, [-y * x for x, y in zip(k, Y, strict=True)])
+                here = tuple(divisor * x for x in k)
+                _add(waves, here, b, -a, [-y * x for x, y in zip(k, Y, strict=True)])
         cos = [[x[0] for x in joints] for joints in waves.values()]
         sin = [[x[1] for x in joints] for joints in waves.values()]
-        return cls(potential.n, list(waves), cos, sin)
+        return cls(potential.n, list(waves), divisor, cos, sin)
+
+    @cached_property
+    def frequencies(self) -> list[tuple[Exact, ...]]:
+        """Each f once, exactly: integers or rationals."""
+        if self.divisor == 1:
+            return list(self.waves)
+        return [tuple(exact(fmpq(x, self.divisor)) for x in f) for f in self.waves]
 
     def bound(self) -> Array:
         """Return upper bounds (n,) on the error of each joint [N m], for every q."""
@@ -90,13 +104,13 @@ class Residual:
     @cached_property
     def is_slow(self) -> bool:
         """Whether float products f.q tell the phases: no wave is very fast."""
-        return all(abs(x) <= SLOW for f in self.frequencies for x in f)
+        return all(abs(x) <= SLOW * self.divisor for f in self.waves for x in f)
 
     @cached_property
     def _floats(self) -> tuple[Array, Array, Array]:
-        shape = (len(self.frequencies), self.n)
+        shape = (len(self.waves), self.n)
         rows = (
-            [[float(x) for x in f] for f in self.frequencies] if self.is_slow else np.zeros(shape)
+            [[x / self.divisor for x in f] for f in self.waves] if self.is_slow else np.zeros(shape)
         )
         cos, sin = (
             np.array([[nearest(x) for x in joints] for joints in part]).reshape(shape)
@@ -106,8 +120,11 @@ class Residual:
 
     def values(self, q: Array) -> Array:
         """Return the errors (m, n) at configurations (m, n), as floats tell them [N m]."""
+        return self.at_phases(self.phases(q))
+
+    def at_phases(self, phases: Array) -> Array:
+        """Return the errors (m, n) where the waves have phases (m, waves) [rad]."""
         _, cos, sin = self._floats
-        phases = self._phases(q)
         return np.asarray(np.cos(phases) @ cos + np.sin(phases) @ sin)
 
     def gradient(self, q: Array, joint: int) -> Array:
@@ -116,7 +133,8 @@ class Residual:
         phases = k @ q
         return np.asarray((np.cos(phases) * sin[:, joint] - np.sin(phases) * cos[:, joint]) @ k)
 
-    def _phases(self, q: Array) -> Array:
+    def phases(self, q: Array) -> Array:
+        """Return the phases (m, waves) at configurations (m, n), of fast waves modulo 2 pi."""
         if self.is_slow:
             return np.asarray(q @ self._floats[0].T)
         points = [exact_vector(point) for point in q]
@@ -125,8 +143,8 @@ class Residual:
 
 
 def _add(
-    waves: dict[tuple[Exact, ...], list[list[arb]]],
-    frequency: tuple[Exact, ...],
+    waves: dict[tuple[int, ...], list[list[arb]]],
+    frequency: tuple[int, ...],
     cos: arb,
     sin: arb,
     weights: list[int],

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.verify.relations.ball_bounds import certified_error, learned_map_bound
@@ -20,6 +21,7 @@ from isotorque.verify.relations.exact_numbers import (
 )
 from isotorque.verify.relations.exact_proof import exact_potential, prove_relation
 from isotorque.verify.relations.residual import Residual
+from isotorque.verify.relations.wave_search import WaveSearch
 from isotorque.verify.testing.counterexamples import largest_value, simplest_configuration
 from isotorque.verify.verdict import Status, Verdict
 
@@ -38,7 +40,7 @@ FEW_TURNS = 32.0
 """Images of small matrices and offsets are computed in floats, all others exactly."""
 
 FAST_CANDIDATES = 64
-"""Configurations tried one by one where waves are too fast to be climbed."""
+"""Configurations in tenths tried one by one before waves too fast for gradients are climbed."""
 
 
 def verify_relation(
@@ -137,11 +139,12 @@ def verify_relation(
 
     excess = _Excess(residual, allowed)
     largest, q = 0.0, None
-    for candidate in excess.candidates(first=not simplify):
-        largest = max(largest, float(errors(candidate).max(initial=0.0)))
-        if fails(candidate):
-            q = candidate
-            break
+    with single_thread():  # small steps of L-BFGS: threads would only wait for each other
+        for candidate in excess.candidates(first=not simplify):
+            largest = max(largest, float(errors(candidate).max(initial=0.0)))
+            if fails(candidate):
+                q = candidate
+                break
     if q is None:
         return Verdict(words, Status.TESTED, largest)
     margin = MARGIN * float(bound.max())
@@ -223,6 +226,9 @@ class _Excess:
             return
         tenths = np.random.default_rng(0).integers(-31, 32, (FAST_CANDIDATES, n)) / 10
         yield from tenths[np.argsort(-self.value(tenths), kind="stable")]
+        search = WaveSearch(self.residual)
+        for joint in np.flatnonzero(self.residual.bound() > self.allowed):
+            yield search.highest(int(joint))
 
     def value(self, q: Array) -> Array:
         return np.asarray((np.abs(self.residual.values(q)) - self.allowed).max(axis=-1))
