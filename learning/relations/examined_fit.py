@@ -11,7 +11,7 @@ from isotorque.learning.relations.potential.errors_in_variables import Measureme
 from isotorque.learning.relations.potential.inactive_joints import fit_on_active_joints
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, quantile
 from isotorque.learning.statistics.lack_of_fit import LackOfFit, lack_of_fit
-from isotorque.learning.statistics.poses import group_poses
+from isotorque.learning.statistics.poses import by_pose
 
 Array = NDArray[np.float64]
 
@@ -63,10 +63,7 @@ def examined_fit(q: Array, tau: Array, noise: MeasurementNoise | None) -> Examin
     Undetermined
         If the poses do not determine the potential, or not whether a joint matters.
     """
-    poses = group_poses(q)
-    torques = tau
-    if poses.repeated:
-        q, torques = poses.configurations(q), poses.means(tau)
+    poses, q, torques = by_pose(q, tau)
     fit, unmoved = fit_on_active_joints(q, torques, noise, LARGEST_ERROR)
     deviations = quantile(BOUND_DEVIATIONS, fit.freedom)
     lack = lack_of_fit(fit, torques, poses=poses, rows=tau, deviations=deviations)

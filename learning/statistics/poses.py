@@ -147,6 +147,32 @@ def group_poses(q: ArrayLike, turning: ArrayLike | None = None) -> Poses:
     return _in_order(_repeated(places, box, label) if exact > 1 else label)
 
 
+def by_pose(q: Array, tau: Array) -> tuple[Poses, Array, Array]:
+    """Group rows by pose and average them: one sample per pose.
+
+    Parameters
+    ----------
+    q, tau : (N, n) arrays
+        Rows [rad], [N m].
+
+    Returns
+    -------
+    poses : Poses
+    q, tau : (count, n) arrays
+        The rows themselves where no pose is repeated.
+
+    Examples
+    --------
+    >>> poses, q, tau = by_pose(np.array([[0.5], [1.5], [0.5]]), np.array([[1.0], [4.0], [2.0]]))
+    >>> q.tolist(), tau.tolist()
+    ([[0.5], [1.5]], [[1.5], [4.0]])
+    """
+    poses = group_poses(q)
+    if not poses.repeated:
+        return poses, q, tau
+    return poses, poses.configurations(q), poses.means(tau)
+
+
 def _repeated(places: Array, box: Array, exact: Labels) -> Labels:
     """Labels at the largest distance with a gap beyond; the exact ones where there is none."""
     labels, total = [exact], len(places)

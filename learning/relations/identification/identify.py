@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
@@ -31,6 +33,9 @@ from isotorque.learning.relations.potential.potential_fit import (
 from isotorque.learning.relations.potential.samples_needed import wanted_samples
 from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.statistics.lack_of_fit import LackOfFit
+from isotorque.learning.statistics.misfit_advice import misfit_advice
+from isotorque.learning.statistics.poses import by_pose
+from isotorque.learning.statistics.torque_scales import torque_scales
 from isotorque.symbolic.groups.group_arrays import lifted_relations
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import identity
@@ -114,12 +119,20 @@ def identify(
         return _nothing(n, str(lacking))
     fit, lack = examined.fit, examined.lack
     if lack.failed:
-        return _nothing(n, examined.obstacle, fit, lack)
+        _, poses, means = by_pose(configurations, torques)
+        scales = torque_scales(poses, means, fit.frequencies)
+        said = examined.obstacle if scales is None else f"{examined.obstacle}, or {scales}"
+        return _nothing(n, said, fit, lack)
     best = _best_group(fit)
     if best is None:
         missing = "more samples: no coefficient of the fitted potential stands out of the noise"
-        return _nothing(n, missing, fit, lack)
-    return claim(examined, best, snap)
+        found = _nothing(n, missing, fit, lack)
+    else:
+        found = claim(examined, best, snap)
+    if found.decided:
+        return found
+    _, poses, means = by_pose(configurations, torques)
+    return replace(found, missing=misfit_advice(poses, means, fit.frequencies) or found.missing)
 
 
 def _nothing(

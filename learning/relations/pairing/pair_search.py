@@ -35,6 +35,7 @@ from isotorque.learning.relations.potential.inactive_joints import (
     stood_still,
 )
 from isotorque.learning.relations.potential.samples_needed import no_torque
+from isotorque.learning.statistics.poses import by_pose
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import SAME_OFFSET, CandidateGroup, completed
 
@@ -112,7 +113,7 @@ def search_pairs(
     Parameters
     ----------
     q, tau : (N, n) arrays
-        Samples [rad], [N m].
+        Rows [rad], [N m]; those of one pose count as one sample.
     noise : MeasurementNoise, optional
         If not given, torques are taken as exact, and the angles' noise as the level of `SIGMAS`
         whose relations save most in the description of the recording, then as measured on the
@@ -125,6 +126,7 @@ def search_pairs(
     Undetermined
         If the recording lacks torques or configurations, or leaves open whether a joint matters.
     """
+    _, q, tau = by_pose(q, tau)  # a pose that was recorded twice is no second configuration
     active = active_joints(tau, noise)
     if not active.any():
         raise Undetermined(no_torque(*tau.shape))

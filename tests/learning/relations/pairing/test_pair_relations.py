@@ -97,6 +97,25 @@ def test_stable_recordings_show_the_relations_between_stable_configurations():
     assert not false_relations(learned.group, group, 1e-9)
 
 
+@pytest.mark.parametrize("jitter", [0.0, 2e-5])
+def test_a_pose_that_was_recorded_often_is_one_configuration(jitter):
+    potential, group = known_potential("2r")
+    rng = np.random.default_rng(6)
+    q, tau = recording(potential, group, rng, 6)
+    order = rng.permutation(np.repeat(np.arange(len(q)), 12))
+    rows, torques = q[order] + jitter * rng.uniform(-1.0, 1.0, (len(order), 2)), tau[order]
+    noise = MeasurementNoise(2e-5, 0.0) if jitter else None
+    once, often = pair_relations(q, tau, noise=noise), pair_relations(rows, torques, noise=noise)
+    assert same_group(often.group, once.group, 1e-3)
+    evidence = {r.relation.Y.tobytes() + r.relation.A.tobytes(): r for r in once.relations}
+    for relation in often.relations:
+        known = evidence[relation.relation.Y.tobytes() + relation.relation.A.tobytes()]
+        assert relation.support == known.support
+    # and two configurations are two, however often they were seen
+    few = pair_relations(np.repeat(q[:2], 50, axis=0), np.repeat(tau[:2], 50, axis=0))
+    assert few.missing == pair_relations(q[:2], tau[:2]).missing
+
+
 def test_secondary_pairs_are_rejected_and_reported():
     potential, group = known_potential("2r")
     q, tau = recording(potential, group, np.random.default_rng(3), 8, kept=(0.9, 0.9))
