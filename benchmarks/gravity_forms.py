@@ -34,7 +34,8 @@ from isotorque.symbolic.gravity.straight_line_program import (
     expanded_program,
     recursion_program,
 )
-from isotorque.symbolic.robots.load_robot import builtin_robots, load_robot
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
+from isotorque.symbolic.robots.load_robot import load_robot
 
 SINGLE, BATCH = 2000, 20_000
 

@@ -28,7 +28,7 @@ from typing import Any
 
 from benchmarks.shared.document import write_between
 from benchmarks.shared.small_arms import SMALL_ARMS, write_arm
-from isotorque.symbolic.robots.load_robot import builtin_robots
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
 
 PAGE = Path(__file__).parents[1] / "docs" / "robots.md"
 DEMANDED_SECONDS = 180.0

@@ -11,7 +11,8 @@ from xml.etree.ElementTree import SubElement, tostring
 from defusedxml import ElementTree
 
 from isotorque.symbolic.common.errors import InputError
-from isotorque.symbolic.robots.load_robot import Robot, builtin_robots, load_robot
+from isotorque.symbolic.robots.builtin_robots import builtin_robots
+from isotorque.symbolic.robots.load_robot import Robot, load_robot
 
 EXAMPLE_ROBOTS = {
     "z1": "z1_description/urdf/z1.urdf",
