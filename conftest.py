@@ -1,6 +1,11 @@
-"""Test settings shared by all tests: one derandomised Hypothesis profile, slow tests on request."""
+"""Settings of all tests: a derandomised Hypothesis profile, slow tests on request, import names."""
 
 import os
+import sys
+from collections.abc import Sequence
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -13,6 +18,35 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("isotorque")
+
+
+FOLDERS = ("symbolic", "learning", "verify")
+"""Folders at the root that are isotorque's: by these names they would be second copies of it."""
+
+
+class BareNames(MetaPathFinder):
+    """Refuses to import folders of the root by their bare names, which tests run there could."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: ModuleType | None = None,
+    ) -> ModuleSpec | None:
+        """Raise for a bare name; leave every other module to others."""
+        if fullname.partition(".")[0] in FOLDERS:
+            raise ImportError(f"import isotorque.{fullname}, not {fullname}", name=fullname)
+        return None
+
+
+def refuse_bare_names() -> None:
+    """Refuse bare names from now on, and say so if one has been imported already."""
+    if found := [name for name in FOLDERS if name in sys.modules]:
+        raise pytest.UsageError(f"import isotorque.{found[0]}, not {found[0]}")
+    sys.meta_path.insert(0, BareNames())
+
+
+refuse_bare_names()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

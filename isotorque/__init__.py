@@ -101,7 +101,7 @@ if TYPE_CHECKING:
     )
     from isotorque.verify.verdict import Verdict as Verdict
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOME = {
     "Arm": "learning.arm",

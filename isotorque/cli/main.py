@@ -28,7 +28,9 @@ from isotorque.cli.streams import patient_streams
 from isotorque.symbolic.common.errors import InputError, visible
 
 # typer may bring click along under a private name: take the class from typer's public one
-_ClickException: type[Exception] = typer.BadParameter.__mro__[2]
+_ClickException: type[Exception] = next(
+    kind for kind in typer.BadParameter.__mro__ if kind.__name__ == "ClickException"
+)
 
 INTERRUPTED = 130
 """Exit status of a command that was interrupted."""

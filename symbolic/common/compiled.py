@@ -9,6 +9,10 @@ from typing import Any
 
 from numba import config, njit
 
+# The only private part of a dependency: numba has no public way to set an entry of a tuple, and
+# vectors of a few numbers are twice as fast as tuples, which stay in registers, as in arrays.
+from numba.cpython.unsafe.tuple import tuple_setitem as tuple_setitem
+
 from isotorque.symbolic.common.cache_folders import can_write, user_cache
 
 

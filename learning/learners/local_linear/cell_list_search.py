@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba.cpython.unsafe.tuple import tuple_setitem
 
-from isotorque.symbolic.common.compiled import compiled
+from isotorque.symbolic.common.compiled import compiled, tuple_setitem
 
 
 @compiled

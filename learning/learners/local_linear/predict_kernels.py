@@ -10,12 +10,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba.cpython.unsafe.tuple import tuple_setitem
 from numpy.typing import NDArray
 
 from isotorque.learning.learners.local_linear.cell_list import CellGrid
 from isotorque.learning.learners.local_linear.cell_list_search import find_far, find_near
-from isotorque.symbolic.common.compiled import compiled
+from isotorque.symbolic.common.compiled import compiled, tuple_setitem
 
 Array = NDArray[np.float64]
 

@@ -6,11 +6,10 @@ Arguments as in ``local_linear_kernels``.
 from __future__ import annotations
 
 import numpy as np
-from numba.cpython.unsafe.tuple import tuple_setitem
 
 from isotorque.learning.learners.local_linear.cell_list_search import enter, find_near
 from isotorque.learning.learners.local_linear.predict_kernels import blend, search, slope, weigh
-from isotorque.symbolic.common.compiled import compiled
+from isotorque.symbolic.common.compiled import compiled, tuple_setitem
 
 
 @compiled
