@@ -8,7 +8,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 settings.register_profile(
     "isotorque",
@@ -16,6 +16,11 @@ settings.register_profile(
     deadline=None,
     print_blob=True,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+settings.register_profile(
+    "first-failure",  # whether a test fails, and not by what smallest example: tests.mutations
+    settings.get_profile("isotorque"),
+    phases=[Phase.explicit, Phase.generate],
 )
 settings.load_profile("isotorque")
 

@@ -33,16 +33,14 @@ class PhaseProof:
     from the few frequencies that generate it, u_k must equal the product of w_j^(c_kj), where
     c_k are the coordinates of k. Everything is arithmetic in Q(i), nothing is rounded.
 
-    A support that leaves out terms (amplitude below 1e-12 of the largest) is never proved;
-    ``complete`` says whether terms were left out elsewhere.
+    Nothing is proved where ``complete`` says that terms were left out (amplitude below 1e-12 of
+    the largest), in the support or in that of other joints.
     """
 
     def __init__(
-        self, potential: TrigonometricPolynomial, support: Support, complete: bool = True
+        self, potential: TrigonometricPolynomial, support: Support, complete: bool
     ) -> None:
-        self.support = support
-        own = len(support.K) == int(np.any(potential.frequencies, axis=1).sum())
-        self.complete = complete and own
+        self.support, self.complete = support, complete
         index = {k.tobytes(): i for i, k in enumerate(np.ascontiguousarray(potential.frequencies))}
         place = [index[k.tobytes()] for k in np.ascontiguousarray(support.K)]
         # C_k up to the factor 1/2, which cancels

@@ -122,6 +122,7 @@ class Copy:
             **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"),
         }
         quiet = ["-q", "--tb=no", "-rfE", "-p", "no:cacheprovider", "--no-header"]
+        quiet += ["--hypothesis-profile", "first-failure"]
         command = [sys.executable, "-m", "pytest", *quiet, *options, *tests]
         process = subprocess.Popen(
             command,

@@ -4,12 +4,14 @@ import numpy as np
 import pinocchio as pin
 import pytest
 import sympy
+from flint import fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.c_source import gravity_c
 from isotorque.symbolic.gravity.gravity_model import GravityMismatch, GravityModel
+from isotorque.symbolic.gravity.potential import derive_potential
 from isotorque.symbolic.gravity.recursion import GravityChain
 from isotorque.symbolic.robots.builtin_robots import builtin_robots
 from isotorque.symbolic.robots.kinematic_tree import human_arm, planar_arm
@@ -315,3 +317,20 @@ def test_components_leave_out_what_stands_for_rounding():
     q = np.array([0.3, -0.4, 1.2])
     components = [f.evaluate(q) for f in gravity.components]
     np.testing.assert_allclose(components, gravity.torque(q), atol=1e-11)
+
+
+@pytest.mark.parametrize("form", ["potential", "torque"])
+@pytest.mark.parametrize("share", [1e-9, 1e-3, 1.0])
+def test_each_of_both_forms_is_checked_by_itself(monkeypatch, form, share):
+    """The potential is what proofs are about, the recursion is what numbers come from."""
+    module = "isotorque.symbolic.gravity.gravity_model"
+    if form == "potential":
+        monkeypatch.setattr(
+            f"{module}.derive_potential",
+            lambda tree: derive_potential(tree) * (1 + fmpq(int(share * 10**9), 10**9)),
+        )
+    else:
+        torque = GravityModel.torque
+        monkeypatch.setattr(GravityModel, "torque", lambda self, q: (1 + share) * torque(self, q))
+    with pytest.raises(GravityMismatch):
+        GravityModel(load_robot("2r"))

@@ -17,7 +17,10 @@ def enumerated_symmetries(potential: TrigonometricPolynomial) -> SymmetryGroup:
     amplitude = numeric.amplitudes()
     limit = RELATIVE * float(amplitude.max(initial=0.0))
     support = Support.of(numeric, amplitude > limit)
-    proof = PhaseProof(potential, support) if potential.cos.dtype == object else None
+    proof = None
+    if potential.cos.dtype == object:
+        complete = len(support.K) == int(np.any(potential.frequencies, axis=1).sum())
+        proof = PhaseProof(potential, support, complete)
     relations = []
     for Y, s in support.structures(amplitude_classes(support.amplitude, limit)):
         for d_sat in support.offsets(Y, s, 16 * limit):

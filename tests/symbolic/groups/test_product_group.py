@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from flint import fmpq
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
@@ -20,6 +21,7 @@ from isotorque.symbolic.symmetries import frequency_support as support
 from isotorque.symbolic.symmetries.approximate_symmetries import maximal_groups
 from isotorque.symbolic.symmetries.exact_symmetries import frequency_blocks
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.relations.exact_proof import prove_relation
 from isotorque.verify.testing.strategies import kinematic_trees
 from tests.symbolic.gravity.small_potentials import planar, potentials, three_r, two_r
 from tests.symbolic.groups.enumeration import enumerated_symmetries
@@ -227,3 +229,19 @@ def test_a_tolerance_with_too_much_to_try_is_refused(monkeypatch):
     with pytest.raises(InputError, match="torque signs to try is more than 3"):
         maximal_groups(U, 0.1)
     assert primary_symmetries(U).order == 1
+
+
+def test_a_relation_is_exact_only_if_it_is_on_every_block():
+    """One arm exactly symmetric, one to rounding alone: the verifier decides what is proved."""
+    zero, one = fmpq(0), fmpq(1)
+    potential = TrigonometricPolynomial(
+        [[1, 0, 0], [0, 1, 1], [0, 1, -1]],
+        np.array([2 * one, one, one + fmpq(1, 10**15)], dtype=object),
+        np.array([zero] * 3, dtype=object),
+    )
+    group = primary_symmetries(potential)
+    for relation in group:
+        proof = prove_relation(relation.A, relation.unwrapped_d, relation.Y, potential)
+        assert relation.exact == proof.holds
+    assert 0 < sum(relation.exact for relation in group) < group.order
+    assert not group.exact

@@ -297,3 +297,34 @@ def test_unusable_torques_are_refused(torque):
 def test_the_group_of_another_arm_is_refused():
     with pytest.raises(InputError, match="number of joints"):
         level_set(two_r(), [1.0, 1.0], group=primary_symmetries(three_r()))
+
+
+@given(st.floats(1e-4, 1e-2), st.booleans())
+@settings(max_examples=20)
+def test_configurations_close_to_a_fold_are_two(away, searched):
+    """Just below the largest torque two configurations of each sign lie next to each other."""
+    pendulum = TrigonometricPolynomial([[1]], [0.0], [5.0])
+    torque = pendulum.gradient([away])
+    if searched:  # a second wave that is hardly there: no closed form
+        pendulum = pendulum + TrigonometricPolynomial([[3]], [0.0], [1e-6])
+        torque = pendulum.gradient([away])
+    found = level_set(pendulum, torque)
+    assert len(found) == 4
+    assert found.complete != searched
+    assert found.regular.all()
+    for q in (away, -away, np.pi - away, away - np.pi):
+        assert apart(np.array([q]), found.configurations).min() < 1e-6
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_search_ends_before_every_set_was_reached_several_times(monkeypatch, seed):
+    """Few starts are prescribed here, so that it is the number of hits that ends the search."""
+    monkeypatch.setattr("isotorque.symbolic.level_sets.newton_search.LEAST_STARTS", 1)
+    rng = np.random.default_rng(seed)
+    waves = [[1, 0], [1, 1], [0, 1], [1, -1]]
+    potential = TrigonometricPolynomial(waves, rng.normal(size=4), rng.normal(size=4))
+    torque = potential.gradient(rng.uniform(-3, 3, 2))
+    found = level_set(potential, torque)
+    assert len(found) > 0
+    assert not found.complete
+    assert found.fewest_hits >= 6

@@ -124,3 +124,34 @@ def test_a_long_chain_is_bounded_too(field):
     bound = torque_difference_bound(body.tree(), other.tree())
     assert np.all(seen <= bound)
     assert np.all(bound < 0.1)
+
+
+@given(st.floats(1e-9, 0.3), st.floats(-np.pi, np.pi), st.floats(0.1, 10.0))
+@settings(max_examples=25)
+def test_half_a_turn_about_an_axis_off_by_s_tilts_gravity_by_twice_that(s, direction, mass):
+    """A vertical axis and a hanging load behind it: the torque reaches what the bound says."""
+    upright = ArmBody(
+        joint_names=("turn", "lift"),
+        parents=(-1, 0),
+        rotations=np.array([np.eye(3)] * 2),
+        translations=np.zeros((2, 3)),
+        axes=np.array([[0.0, 0.0, 1.0], [np.sin(direction), -np.cos(direction), 0.0]]),
+        masses=np.array([1.0, mass]),
+        levers=np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -0.5]]),
+        inertias=np.array([np.eye(3)] * 2),
+        limits=np.array([[-np.pi, np.pi]] * 2),
+        efforts=np.full(2, np.inf),
+        velocities=np.full(2, np.inf),
+        damping=np.zeros(2),
+        friction=np.zeros(2),
+        armature=np.zeros(2),
+        gravity=np.array([0.0, 0.0, -9.81]),
+    )
+    axes = upright.axes.copy()
+    axes[0] = [np.sin(s) * np.cos(direction), np.sin(s) * np.sin(direction), np.cos(s)]
+    tilted = replace(upright, axes=axes)
+    half_a_turn = np.array([[np.pi, 0.0]])
+    seen = np.abs(gravity(upright, half_a_turn) - gravity(tilted, half_a_turn))[0]
+    np.testing.assert_allclose(seen[1], 0.5 * mass * 9.81 * np.sin(2 * s), rtol=1e-5)
+    for bound in (_by_lengths, _by_coefficients, torque_difference_bound):
+        assert np.all(seen <= bound(upright.tree(), tilted.tree()) * (1 + 1e-7) + 1e-14)

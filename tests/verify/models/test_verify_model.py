@@ -77,6 +77,28 @@ def test_a_narrow_error_is_found_by_climbing(two_link):
     assert np.array_equal(verdict.counterexample, judgement.worst_configuration)
 
 
+@given(st.floats(0.05, 0.95))
+@settings(max_examples=8)
+def test_what_a_set_misses_and_a_search_finds_refutes(two_link, share):
+    """The worst of the set is within what is allowed, the worst of the space is not."""
+    peak = np.array([0.4, -1.1])
+
+    def bump(q):
+        distance = np.sum((q - peak) ** 2, axis=1) / 0.04**2
+        return np.stack([0 * distance, np.exp(-distance)], axis=1)
+
+    seen = bump(dense_targets([[-np.pi, np.pi]] * 2).q).max()
+    assert seen < 0.95
+    allowed = seen + share * (1.0 - seen)
+    judgement = verify_model(
+        Learned(two_link.gravity, bump), two_link.gravity, tolerance=1.0, largest_tolerance=allowed
+    )
+    if judgement.largest_error[1] > allowed:  # where the search found it
+        assert [v.status for v in judgement.verdicts] == [Status.TESTED, Status.REFUTED]
+    assert judgement.verdicts[-1].worst_error == pytest.approx(judgement.largest_error.max())
+    assert judgement.largest_error.max() > seen
+
+
 def test_limits_keep_the_search_inside(two_link):
     limits = np.array([[-1.0, 0.5], [0.2, 0.3]])
     model = Learned(two_link.gravity, lambda q: q)

@@ -91,3 +91,19 @@ def test_certified_errors_see_what_floats_cannot():
     assert 0 < found <= float(expected)
     assert found > 0.999 * float(expected)
     assert certified_error([[1]], [0.0], [1], potential, [q])[0] == 0.0
+
+
+@FEW
+@given(st.floats(0.05, 0.45), st.floats(0.5, 60.0), st.floats(-30.0, 30.0))
+def test_waves_that_run_out_of_step_differ_by_up_to_twice_their_size(error, width, middle):
+    """sin q under q -> (1 + error) q: in a wide box both waves meet with opposite signs."""
+    potential = TrigonometricPolynomial([[1]], [0.0], [1.0])
+    bound = learned_map_bound(
+        [[1 + error]], [0.0], [1], potential, center=[middle], half_widths=[width]
+    )
+    q = np.linspace(middle - width, middle + width, 20001)[:, None]
+    found = errors(potential, SymmetryRelation([[1 + error]], [0.0], [1]), q).max(axis=0)
+    assert np.all(found <= bound * (1 + 1e-12))
+    assert np.all(bound <= 2.0 + 1e-12)
+    if width * error > 2 * np.pi:
+        assert np.all(bound > 1.9)

@@ -12,12 +12,14 @@ from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.relations.ball_bounds import relation_error_bound
 from isotorque.verify.relations.relation_files import (
     RelationsFile,
     load_relations,
     relations_document,
 )
 from isotorque.verify.relations.relations_file_claims import verify_relations_file
+from isotorque.verify.relations.verify_relation import verify_relation
 from isotorque.verify.verdict import Status, all_passed
 
 
@@ -172,3 +174,36 @@ def test_files_about_other_arms_are_refused(arms):
     named = file_of(arms["2r"].group, joint_names=("a", "b"))
     with pytest.raises(InputError, match="joints is"):
         verify_relations_file(named, arms["2r"].gravity)
+
+
+def test_bounds_of_which_one_was_only_tested_are_only_tested(arms):
+    """Between the largest error found and the sum of all waves nothing is bounded or refuted."""
+    gravity = arms["3r"].gravity  # four waves, but only three free phases
+    near = SymmetryRelation(np.eye(3), [2e-3, 0.0, 3e-3], np.ones(3))
+    worst = verify_relation(near, gravity, 1e-9).worst_error
+    whole = relation_error_bound(near.A, near.unwrapped_d, near.Y, gravity.potential).max()
+    assert worst < 0.999 * whole
+    still = SymmetryRelation(np.eye(3), np.zeros(3), np.ones(3), bound=np.full(3, 1.0))
+    for claimed, status in (
+        (1.0001 * worst, Status.TESTED),
+        (1.0001 * whole, Status.BOUNDED),
+        (0.99 * worst, Status.REFUTED),
+    ):
+        bounded = SymmetryRelation(near.A, near.d, near.Y, bound=np.full(3, claimed))
+        for order in ([bounded], [bounded, still], [still, bounded]):
+            verdict = verify_relations_file(file_of(order), gravity, 1.0)[-1]
+            assert verdict.status is status
+
+
+@pytest.mark.parametrize("error", [1e-14, 1e-9, 5e-7])
+def test_a_list_of_relations_that_are_only_nearly_true_is_not_complete(two_link, error):
+    """Near enough to be recognised as one of the group, and not proved."""
+    eight = list(two_link.group)
+    near = SymmetryRelation(eight[3].A, eight[3].d + np.array([error, -error]), eight[3].Y)
+    file = file_of([*eight[:3], near, *eight[4:]], order=8, complete=True)
+    *_, last = verify_relations_file(file, two_link.gravity, 1e-3)
+    assert "all that there are" in last.claim
+    assert last.status is Status.REFUTED
+    assert verify_relations_file(file_of(eight, order=8, complete=True), two_link.gravity)[
+        -1
+    ].passed

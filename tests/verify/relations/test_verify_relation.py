@@ -178,6 +178,19 @@ def test_the_same_question_has_the_same_answer(two_link):
     assert first.to_json() == second.to_json()
 
 
+@pytest.mark.parametrize("size", [1e-9, 1e-6, 1e-3])
+def test_the_smallest_contradiction_that_is_no_rounding_is_refused(monkeypatch, size):
+    broken = GravityModel(load_robot("2r"))
+    assert broken.rounding < 1e-10
+    torque = broken.torque
+    monkeypatch.setattr(broken, "torque", lambda q: torque(q) + np.array([0.0, size]))
+    with pytest.raises(InputError, match="difference of torque and potential"):
+        verify_relation(SymmetryRelation(np.eye(2), [np.pi, 0], [-1, -1]), broken)
+    # a claim that is only bounded is held against it too
+    with pytest.raises(InputError, match="difference of torque and potential"):
+        verify_relation(SymmetryRelation(np.eye(2), [np.pi - 1e-13, 0], [-1, -1]), broken, 1e-11)
+
+
 def test_a_gravity_model_that_contradicts_itself_is_refused(two_link, monkeypatch):
     broken = GravityModel(load_robot("2r"))
     torque = broken.torque

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
-from hypothesis import given
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.robots.urdf.urdf_file import parse_urdf, urdf_text
@@ -208,6 +209,26 @@ def test_names_in_any_script_and_encoding(encoding):
     text = declared + ARM.replace("elbow", "épaule")
     joint = parse_urdf(text.encode(encoding), "a").joints[0]
     assert joint.name == "épaule"
+
+
+@given(st.floats(-7.0, 7.0), st.floats(-7.0, 7.0))
+@example(0.0, 1.5)
+@example(-1.5, 0.0)
+def test_limits_are_read_as_they_are_unless_both_are_zero(lower, upper):
+    text = edited('lower="-1" upper="1"', f'lower="{lower!r}" upper="{upper!r}"')
+    joint = parse_urdf(text.encode(), "a").joints[0]
+    none = lower == upper == 0.0
+    assert (joint.lower, joint.upper) == ((None, None) if none else (lower, upper))
+
+
+@pytest.mark.parametrize(
+    ("limits", "read"),
+    [('upper="1.5"', (0.0, 1.5)), ('lower="-1.5"', (-1.5, 0.0)), ('lower="1" upper="0"', (1, 0))],
+)
+def test_a_limit_that_is_left_out_is_zero_beside_one_that_is_not(limits, read):
+    text = edited('lower="-1" upper="1"', limits)
+    joint = parse_urdf(text.encode(), "a").joints[0]
+    assert (joint.lower, joint.upper) == read
 
 
 @pytest.mark.parametrize("limits", ["", 'lower="0" upper="0"', 'upper="0.0"'])
