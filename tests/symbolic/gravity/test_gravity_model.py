@@ -329,8 +329,13 @@ def test_each_of_both_forms_is_checked_by_itself(monkeypatch, form, share):
             f"{module}.derive_potential",
             lambda tree: derive_potential(tree) * (1 + fmpq(int(share * 10**9), 10**9)),
         )
-    else:
-        torque = GravityModel.torque
-        monkeypatch.setattr(GravityModel, "torque", lambda self, q: (1 + share) * torque(self, q))
+        with pytest.raises(GravityMismatch):
+            GravityModel(load_robot("2r"))
+        return
+    torque = GravityChain.torque
+    monkeypatch.setattr(GravityChain, "torque", lambda self, q: (1 + share) * torque(self, q))
+    gravity = GravityModel(load_robot("2r"))
     with pytest.raises(GravityMismatch):
-        GravityModel(load_robot("2r"))
+        gravity.torque([0.1, 0.2])
+    with pytest.raises(GravityMismatch):
+        gravity.stiffness([0.1, 0.2])
