@@ -148,16 +148,33 @@ def _failures(output: str) -> list[str]:
 
 
 @cache
-def _imports(file: Path) -> frozenset[str]:
-    """Modules that a file imports anywhere in it."""
-    found = set()
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+def _parsed(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+@cache
+def _imports(file: Path) -> dict[str, str]:
+    """Names that a file imports anywhere in it, and the modules they come from."""
+    found = {}
+    for node in ast.walk(_parsed(file)):
         if isinstance(node, ast.ImportFrom) and node.module:
-            found.add(node.module)
-            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+            for alias in node.names:
+                found[alias.asname or alias.name] = node.module
+                found[f"{node.module}.{alias.name}"] = f"{node.module}.{alias.name}"
         elif isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-    return frozenset(found)
+            found |= {alias.name: alias.name for alias in node.names}
+    return found
+
+
+def _decorators(file: Path) -> set[str]:
+    """Modules that the decorators of a file's functions come from."""
+    used = set()
+    for node in ast.walk(_parsed(file)):
+        for decorator in getattr(node, "decorator_list", ()):
+            call = decorator.func if isinstance(decorator, ast.Call) else decorator
+            if isinstance(call, ast.Name):
+                used.add(_imports(file).get(call.id, ""))
+    return used
 
 
 @cache
@@ -169,11 +186,15 @@ def _seen_by_compiled() -> frozenset[str]:
         for room in rooms
         for path in (ROOT / room).rglob("*.py")
     }
-    reached = {name for name, path in files.items() if COMPILED in _imports(path)}
+    reached = {name for name, path in files.items() if COMPILED in _imports(path).values()}
+    more = reached
+    while more:  # decorators that compile may be made elsewhere
+        more = {name for name, path in files.items() if _decorators(path) & reached} - reached
+        reached |= more
     fresh = set(reached)
     while fresh:
-        seen = {name for module in fresh for name in _imports(files[module]) if name in files}
-        fresh = seen - reached
+        seen = {name for module in fresh for name in _imports(files[module]).values()}
+        fresh = (seen & files.keys()) - reached
         reached |= fresh
     return frozenset(reached)
 
