@@ -49,6 +49,9 @@ if TYPE_CHECKING:
     from isotorque.learning.learners.rigid.equivariant_trigonometric import (
         EquivariantTrigonometric as EquivariantTrigonometric,
     )
+    from isotorque.learning.learners.rigid.process.rigid_chain_process import (
+        RigidChainProcess as RigidChainProcess,
+    )
     from isotorque.learning.learners.rigid.rigid_chain import RigidChain as RigidChain
     from isotorque.learning.learners.rigid.static_regressor import (
         StaticRegressor as StaticRegressor,
@@ -120,6 +123,7 @@ _HOME = {
     "Recording": "learning.recordings.recording",
     "RecursiveLeastSquares": "learning.learners.local_linear.recursive_least_squares",
     "RigidChain": "learning.learners.rigid.rigid_chain",
+    "RigidChainProcess": "learning.learners.rigid.process.rigid_chain_process",
     "Robot": "symbolic.robots.load_robot",
     "SamplingRegion": "learning.sampling.sampling_region",
     "SavedModel": "learning.files.saved_models",

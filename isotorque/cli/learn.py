@@ -133,7 +133,7 @@ def learn(
 
 
 def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quiet: bool) -> int:
-    from isotorque.runs.from_data.chain_from_data import ChainDataOptions, chain_from_data
+    from isotorque.runs.from_data.chain_from_data import RIGID, ChainDataOptions, chain_from_data
     from isotorque.symbolic.common.errors import InputError
 
     if given.get("data") is None:
@@ -141,11 +141,12 @@ def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quie
         raise InputError("command line", "ROBOT", "missing", accepted)
     other = tuple(x for x in SIMULATED if x not in ("torque_noise", "angle_noise"))
     _refuse(given, ("strategy", "samples", "symmetries", "drop_outliers", *other), "no ROBOT")
-    if given.get("learner", "rigid-chain") != "rigid-chain":
-        accepted = "rigid-chain, the learner that needs no robot; or a ROBOT"
-        raise InputError("command line", "--learner", given["learner"], accepted)
     options = ChainDataOptions(
-        given["data"], given.get("torque_noise"), given.get("angle_noise"), given.get("seed", 0)
+        given["data"],
+        given.get("torque_noise"),
+        given.get("angle_noise"),
+        given.get("seed", 0),
+        given.get("learner") or RIGID,
     )
     found = chain_from_data(options)
     document = found.document(found.save(out))
@@ -154,7 +155,8 @@ def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quie
     else:
         _print_chain(document)
         if document["model"] is not None:
-            say(f"written: {document['model']} and {out / 'relations.json'}", quiet)
+            also = f" and {out / 'relations.json'}" if "relations" in document else ""
+            say(f"written: {document['model']}{also}", quiet)
     return 0 if document["accepted"] else 1
 
 
@@ -163,14 +165,22 @@ def _print_chain(document: dict[str, Any]) -> None:
     count = f"{rows} samples" if poses == rows else f"{rows} samples in {poses} poses"
     print(f"{count} of {len(document['joints'])} joints:", end=" ")
     if not document["accepted"]:
-        print(f"no rigid chain is accepted, {document['verdict']}")
+        print(f"no {_chain(document)} is accepted, {document['verdict']}")
         print(f"missing: {document['missing']}")
         return
-    print(f"a rigid chain {document['verdict']}")
+    print(f"a {_chain(document)} {document['verdict']}")
     error = document["standard_error"]
     print(f"torque known to {error['rms']:.2g} N m within the ranges of the recording", end=" ")
     print(f"(standard error, RMS; at most {error['largest']:.2g})")
-    print(f"{document['relations']} symmetry relations, {document['statement']}")
+    if "relations" in document:
+        print(f"{document['relations']} symmetry relations, {document['statement']}")
+    for name, share in zip(document["joints"], document.get("process_share", []), strict=False):
+        print(f"{name}: {100 * share:.1f} % of the torque (RMS) is beside the rigid chain")
+
+
+def _chain(document: dict[str, Any]) -> str:
+    beside = " with Gaussian processes" if "+" in document["learner"] else ""
+    return f"rigid chain{beside}"
 
 
 def _given(context: typer.Context) -> dict[str, Any]:

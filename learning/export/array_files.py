@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from isotorque.learning.export.forms.chain_recursion import ChainRecursion
+from isotorque.learning.export.forms.chain_with_kernels import ChainWithKernels
 from isotorque.learning.export.forms.kernels import Kernels
 from isotorque.learning.export.forms.local_functions import LocalFunctions
 from isotorque.learning.export.forms.tanh_units import TanhUnits
@@ -23,7 +24,7 @@ from isotorque.symbolic.common.errors import InputError
 SCHEMA = 1
 FORMAT = "isotorque export"
 FORMS: dict[str, Any] = {
-    f.KIND: f for f in (Waves, TanhUnits, Kernels, LocalFunctions, ChainRecursion)
+    f.KIND: f for f in (Waves, TanhUnits, Kernels, LocalFunctions, ChainRecursion, ChainWithKernels)
 }
 
 

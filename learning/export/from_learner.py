@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning.export.forms.canonical_copy import FoldedCopy
 from isotorque.learning.export.forms.chain_recursion import ChainRecursion
+from isotorque.learning.export.forms.chain_with_kernels import ChainWithKernels
 from isotorque.learning.export.forms.kernels import Kernels
 from isotorque.learning.export.forms.local_functions import LocalFunctions
 from isotorque.learning.export.forms.symmetric_copies import Copies
@@ -24,6 +25,9 @@ from isotorque.learning.learners.local_linear.recursive_least_squares import Rec
 from isotorque.learning.learners.memory.dictionary_learner import DictionaryLearner
 from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
 from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
+from isotorque.learning.learners.rigid.fitting.joint_columns import Shape
+from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 from isotorque.learning.learners.rigid.structure.canonical_form import CanonicalForm
@@ -174,10 +178,44 @@ def _recursive_least_squares(learner: RecursiveLeastSquares) -> LocalFunctions:
 
 
 def _rigid_chain(learner: RigidChain) -> ChainRecursion:
-    chain = learner.chain_
+    return _recursion(learner.chain_)
+
+
+def _recursion(chain: ChainParameters) -> ChainRecursion:
     form = CanonicalForm.of(chain)
     return ChainRecursion.of(
-        chain.parents, form.offsets, form.twists, form.levers, chain.gains, chain.offsets
+        chain.parents,
+        form.offsets,
+        form.twists,
+        form.levers,
+        chain.gains,
+        chain.coefficient(Shape.OFFSET),
+    )
+
+
+def _rigid_chain_process(learner: RigidChainProcess) -> ChainWithKernels:
+    models = learner.accepted_models
+    chains = [model.chain for model in models]
+    springs, sines, cosines = (
+        np.mean([chain.coefficient(shape) for chain in chains], axis=0)
+        for shape in (Shape.SPRING, Shape.SINE, Shape.COSINE)
+    )
+    tables = [model.kernel_tables() for model in models if model.processes]
+    q = models[0].processes[0].q if tables else np.zeros((0, chains[0].n))
+    n = chains[0].n
+    empty = (np.zeros((0, n)), np.zeros((0, n, n)), np.zeros((0, 0, n)), np.zeros((0, 0, n)))
+    stacked = [np.stack(part) for part in zip(*tables, strict=True)] if tables else empty
+    own_rates, rates, own_weights, weights = stacked
+    return ChainWithKernels(
+        tuple(_recursion(chain) for chain in chains),
+        springs,
+        sines,
+        cosines,
+        q,
+        own_rates,
+        rates,
+        own_weights / len(chains),
+        weights / len(chains),
     )
 
 
@@ -194,6 +232,7 @@ CONVERSIONS: dict[type, Any] = {
     LocalLinearMap: _local_linear_map,
     RecursiveLeastSquares: _recursive_least_squares,
     RigidChain: _rigid_chain,
+    RigidChainProcess: _rigid_chain_process,
     DictionaryLearner: _dictionary,
 }
 """Learners that can be exported."""

@@ -113,6 +113,12 @@ def _rigid_chain(group: SymmetryGroup | None, task: LearningTask) -> Any:
     return RigidChain(random_state=task.seed)
 
 
+def _rigid_chain_process(group: SymmetryGroup | None, task: LearningTask) -> Any:
+    from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
+
+    return RigidChainProcess(random_state=task.seed)
+
+
 ONLINE_LEARNERS: dict[str, Factory] = {
     "local-linear-map": _local_linear_map,
     "local-linear-map-it": _local_linear_map_it,
@@ -126,6 +132,7 @@ BATCH_LEARNERS: dict[str, Factory] = {
     "network": _network,
     "parametric": _parametric,
     "rigid-chain": _rigid_chain,
+    "rigid-chain+gaussian-process": _rigid_chain_process,
 }
 """Learners that are fitted to all samples at once (``fit``)."""
 
@@ -144,6 +151,7 @@ SAVED_LEARNERS = (
     "LocalLinearMap",
     "RecursiveLeastSquares",
     "RigidChain",
+    "RigidChainProcess",
     "StaticRegressor",
     "SymmetricGaussianProcess",
 )
@@ -188,6 +196,12 @@ def learner_class(name: str) -> Any:
             from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 
             return RigidChain
+        case "RigidChainProcess":
+            from isotorque.learning.learners.rigid.process.rigid_chain_process import (
+                RigidChainProcess,
+            )
+
+            return RigidChainProcess
         case "StaticRegressor":
             from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 
@@ -227,6 +241,7 @@ def learner_by_name(name: str, group: SymmetryGroup | None, task: LearningTask) 
         unknown coefficients. ``gaussian-process``, ``network``: any smooth torque.
         ``parametric``: masses and first moments of the arm of ``task.robot``. ``rigid-chain``:
         rigid links in series, geometry and masses unknown; needs no relations.
+        ``rigid-chain+gaussian-process``: the same, with cables, springs and bending.
     group
         Relations to exploit; None: no symmetries.
     task

@@ -121,6 +121,13 @@ class ChainRecursion:
 
     def c_source(self) -> str:
         """See `TorqueForm`."""
+        tables = Tables()
+        function = self.c_function(tables, "isotorque_gravity", "SHIFT", static=False)
+        turn = C_TURN if "turn(" in function else ""
+        return f"{tables.source()}\n{turn}\n{function}"
+
+    def c_function(self, tables: Tables, name: str, shift: str, static: bool = True) -> str:
+        """C99 of ``name(q, tau)``; calls ``turn`` (`C_TURN`), its table of shifts in ``tables``."""
         code = Statements()
         used = self._used()
         cos, sin = ({int(j): f"{f}{j}" for j in np.flatnonzero(used)} for f in "cs")
@@ -173,19 +180,17 @@ class ChainRecursion:
             _total((g, t), (b,)) for g, t, b in zip(self.gains, torques, self.biases, strict=True)
         ]
         body = code.needed_for(results)
-        tables = ""
         if body:
-            constants = Tables()
-            constants.number("JOINTS", self.joints)
-            constants.add("SHIFT", self.shifts)
-            tables = f"{constants.source()}\n{C_TURN}\n"
-            body[:0] = ["double c[JOINTS], s[JOINTS];", "int j;", *C_TURNS]
+            tables.add(shift, self.shifts)
+            n = self.joints
+            turns = [f"for (j = 0; j < {n}; j++)", f"    turn(q[j] + {shift}[j], c + j, s + j);"]
+            body[:0] = [f"double c[{n}], s[{n}];", "int j;", *turns]
         else:
             body = ["(void)q;"]
         body += [f"tau[{j}] = {result};" for j, result in enumerate(results)]
         text = "\n".join(f"    {line}" for line in body)
-        head = "void isotorque_gravity(const double *q, double *tau)"
-        return f"{tables}{head}\n{{\n{text}\n}}\n"
+        head = f"{'static ' if static else ''}void {name}(const double *q, double *tau)"
+        return f"{head}\n{{\n{text}\n}}\n"
 
     def _used(self) -> NDArray[np.bool_]:
         """Which joints carry something: they, and no others, have torques."""
@@ -214,7 +219,6 @@ class ChainRecursion:
         return cls(arrays["parents"].astype(np.int64), *(arrays[name] for name in names))
 
 
-C_TURNS = ("for (j = 0; j < JOINTS; j++)", "    turn(q[j] + SHIFT[j], c + j, s + j);")
 C_TURN = """
 /* Cosine and sine of x [rad]: quarter turns are taken off, the rest is a polynomial (fdlibm's). */
 static void turn(double x, double *c, double *s)

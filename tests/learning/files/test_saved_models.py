@@ -52,7 +52,7 @@ def test_every_learner_predicts_the_same_bits_after_loading(
     tmp_path_factory, name, seed, group, count, noisy, size
 ):
     # a chain from fewer samples than determine it is not accepted and not saved
-    q, torque = samples(seed, max(count, 5) if name == "rigid-chain" else count)
+    q, torque = samples(seed, max(count, 5) if "rigid" in name else count)
     learner = learner_by_name(name, group, LearningTask(2, count, noisy, "2r", seed=seed))
     quicken(learner)
     learner.fit(q, size * torque)

@@ -105,9 +105,13 @@ class ChainParameters:
     @property
     def offsets(self) -> Array:
         """Constant part of the measured torque of every joint, (n,) [N m]."""
+        return self.coefficient(Shape.OFFSET)
+
+    def coefficient(self, shape: Shape) -> Array:
+        """What multiplies a shape in the measured torque of every joint, (n,); 0 without."""
         result = np.zeros(self.n)
         for column, x in zip(self.columns, self.coefficients, strict=True):
-            if column.shape is Shape.OFFSET:
+            if column.shape is shape:
                 result[column.joint] += x
         return result
 
@@ -153,8 +157,7 @@ class ChainParameters:
         gains = self.gains[:, None]
         stiffness *= gains
         for column, x in zip(self.columns, self.coefficients, strict=True):
-            if column.shape is Shape.SPRING:
-                stiffness[:, column.joint, column.joint] += x
+            stiffness[:, column.joint, column.joint] += x * column.slope(points)
         extra = features(self.columns, points)
         return ChainDerivatives(
             true * self.gains + extra @ self.coefficients,

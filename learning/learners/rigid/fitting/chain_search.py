@@ -203,8 +203,7 @@ def polished(samples: ChainSamples, found: SearchedChain, model: ChainModel) -> 
     Normal equations lose half of the digits; this brings them back.
     """
     chain, cost = found.chain, _cost(samples, found.chain, found.whitening)
-    n, free = chain.n, model.free
-    directions = raw_directions(n)
+    free, directions = model.free, raw_directions(chain.n)
     for _ in range(POLISHING):
         slopes = chain.derivatives(samples.q, directions)
         rows = (found.whitening @ slopes.by_parameters()[:, :, free]).reshape(samples.equations, -1)
@@ -219,20 +218,26 @@ def polished(samples: ChainSamples, found: SearchedChain, model: ChainModel) -> 
             factor[kept] = s[kept] / (s[kept] ** 2 + (damping * s.max()) ** 2)
             step = np.zeros(len(free))
             step[free] = (v.T @ (factor * along)) / scale
-            moved = replace(
-                chain,
-                rotations=turn(chain.rotations, directions, np.ascontiguousarray(step[: 2 * n])),
-                levers=chain.levers + step[2 * n : 4 * n].reshape(n, 2),
-                gains=chain.gains + step[4 * n : 5 * n],
-                coefficients=chain.coefficients + step[5 * n :],
-            )
+            moved = stepped(chain, directions, step)
             moved_cost = _cost(samples, moved, found.whitening)
             if moved_cost < cost:
                 chain, cost = moved, moved_cost
                 break
         if cost > (1 - LITTLE) * before or cost < ROUNDED * samples.equations:
             break
-    return SearchedChain(_orthonormal(chain), cost, found.whitening)
+    return SearchedChain(orthonormal(chain), cost, found.whitening)
+
+
+def stepped(chain: ChainParameters, directions: Array, step: Array) -> ChainParameters:
+    """The chain moved along turns, levers, gains and coefficients (`ChainDerivatives`)."""
+    n = chain.n
+    return replace(
+        chain,
+        rotations=turn(chain.rotations, directions, np.ascontiguousarray(step[: 2 * n])),
+        levers=chain.levers + step[2 * n : 4 * n].reshape(n, 2),
+        gains=chain.gains + step[4 * n : 5 * n],
+        coefficients=chain.coefficients + step[5 * n :],
+    )
 
 
 def best_of(found: Sequence[SearchedChain]) -> SearchedChain:
@@ -245,7 +250,7 @@ def _cost(samples: ChainSamples, chain: ChainParameters, whitening: Array) -> fl
     return float(np.sum(rest**2))
 
 
-def _orthonormal(chain: ChainParameters) -> ChainParameters:
+def orthonormal(chain: ChainParameters) -> ChainParameters:
     """Rotations without the rounding of many products."""
     u, _, v = np.linalg.svd(chain.rotations)
     return replace(chain, rotations=np.ascontiguousarray(u @ v))

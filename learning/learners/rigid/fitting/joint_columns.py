@@ -19,12 +19,25 @@ class Shape(StrEnum):
     """Constant: a zero error of the torque sensor. The unknown is in N m."""
     SPRING = "spring"
     """Proportional to the angle. The unknown is in N m/rad."""
+    SINE = "sine"
+    COSINE = "cosine"
+    """Sine and cosine of the angle. The unknowns are in N m."""
 
 
 FEATURES: dict[Shape, Callable[[Array], Array]] = {
     Shape.OFFSET: np.ones_like,
     Shape.SPRING: lambda angle: angle,
+    Shape.SINE: np.sin,
+    Shape.COSINE: np.cos,
 }
+
+SLOPES: dict[Shape, Callable[[Array], Array]] = {
+    Shape.OFFSET: np.zeros_like,
+    Shape.SPRING: np.ones_like,
+    Shape.SINE: np.cos,
+    Shape.COSINE: lambda angle: -np.sin(angle),
+}
+"""Their derivatives by the angle."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +59,19 @@ class JointColumn:
         """F of the angles in configurations (m, n) [rad], shape (m,)."""
         return np.asarray(FEATURES[self.shape](q[:, self.joint]))
 
+    def slope(self, q: Array) -> Array:
+        """Derivative of `feature` by the angle, shape (m,)."""
+        return np.asarray(SLOPES[self.shape](q[:, self.joint]))
+
 
 def offset_columns(joints: int) -> tuple[JointColumn, ...]:
     """An unknown constant offset at every joint."""
-    return tuple(JointColumn(j, Shape.OFFSET) for j in range(joints))
+    return columns_of(joints, Shape.OFFSET)
+
+
+def columns_of(joints: int, *shapes: Shape) -> tuple[JointColumn, ...]:
+    """A column of each of these shapes at every joint."""
+    return tuple(JointColumn(j, shape) for shape in shapes for j in range(joints))
 
 
 def features(columns: Sequence[JointColumn], q: Array) -> Array:

@@ -85,12 +85,16 @@ class Information:
     def standard_error(self, chain: ChainParameters, q: Array) -> Array:
         """Of the torques at configurations (m, n) [rad], (m, n) [N m]; inf where undetermined."""
         slopes = chain.derivatives(q, raw_directions(chain.n)).by_parameters()[:, :, self.free]
-        error = np.linalg.norm(slopes @ self.factor, axis=2)
+        return np.sqrt(self.variance(slopes))
+
+    def variance(self, slopes: Array) -> Array:
+        """Of quantities with derivatives (..., p) by the free parameters; inf where not known."""
         scaled = slopes / self.scale
-        open_part = np.linalg.norm(scaled @ self.vectors[~self.kept].T, axis=2)
-        size = np.linalg.norm(scaled, axis=2)
-        largest = size.max(initial=0.0)
-        return np.where(open_part > OPEN * np.maximum(size, 1e-6 * largest), np.inf, error)
+        open_part = np.linalg.norm(scaled @ self.vectors[~self.kept].T, axis=-1)
+        size = np.linalg.norm(scaled, axis=-1)
+        least = OPEN * np.maximum(size, 1e-6 * size.max(initial=0.0))
+        known = np.sum((slopes @ self.factor) ** 2, axis=-1)
+        return np.where(open_part > least, np.inf, known)
 
 
 def identifiable_count(chain: ChainParameters, free: Mask) -> int:

@@ -1,0 +1,1 @@
+"""A rigid chain and Gaussian processes of what it leaves: cables, springs, bending."""
