@@ -75,6 +75,24 @@ def learn(
             "--drop-outliers", help="With --data: leave out rows that do not fit the others."
         ),
     ] = False,
+    unknown_gains: Annotated[
+        bool,
+        typer.Option(
+            "--unknown-gains",
+            help="Without ROBOT: torques are in units of their own at every joint, motor currents"
+            " say; ratios of coupled joints are found.",
+        ),
+    ] = False,
+    known_gain: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--known-gain",
+            metavar="JOINT=GAIN",
+            help="With --unknown-gains: recorded value over torque [1/(N m)] of one joint; fixes"
+            " the factor common to all that are coupled with it. May be given several times.",
+            show_default=False,
+        ),
+    ] = None,
     n_min: NMin = 2,
     learn_anyway: LearnAnyway = False,
     physics: Physics = "open_loop",
@@ -105,7 +123,9 @@ def learn(
     from isotorque.symbolic.common.files import output_directory
 
     given = _given(context)
-    if robot is None:
+    if robot is not None:
+        _refuse(given, ("unknown_gains", "known_gain"), "a ROBOT")
+    else:
         return _learn_from_data_alone(given, out, json=json, quiet=quiet)
     load(as_recorded(robot, out), quiet)
     if data is not None:
@@ -147,6 +167,8 @@ def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quie
         given.get("angle_noise"),
         given.get("seed", 0),
         given.get("learner") or RIGID,
+        given.get("unknown_gains", False),
+        tuple(given.get("known_gain") or ()),
     )
     found = chain_from_data(options)
     document = found.document(found.save(out))
@@ -167,6 +189,8 @@ def _print_chain(document: dict[str, Any]) -> None:
     if not document["accepted"]:
         print(f"no {_chain(document)} is accepted, {document['verdict']}")
         print(f"missing: {document['missing']}")
+        if document["explained_if"]:
+            print(f"a rigid chain explains all of them if {document['explained_if']}")
         return
     print(f"a {_chain(document)} {document['verdict']}")
     error = document["standard_error"]
@@ -174,8 +198,20 @@ def _print_chain(document: dict[str, Any]) -> None:
     print(f"(standard error, RMS; at most {error['largest']:.2g})")
     if "relations" in document:
         print(f"{document['relations']} symmetry relations, {document['statement']}")
+    for group in document.get("gains", []):
+        _print_gains(group)
     for name, share in zip(document["joints"], document.get("process_share", []), strict=False):
         print(f"{name}: {100 * share:.1f} % of the torque (RMS) is beside the rigid chain")
+
+
+def _print_gains(group: dict[str, Any]) -> None:
+    listed = ", ".join(f"{name} {gain:.6g}" for name, gain in group["gains"].items())
+    if group["common_factor_known"]:
+        print(f"gains: {listed}")
+    elif len(group["gains"]) == 1:
+        print(f"gain of {next(iter(group['gains']))}: not determined by any other joint")
+    else:
+        print(f"gains: {listed}; their common factor is not known (--known-gain JOINT=GAIN)")
 
 
 def _chain(document: dict[str, Any]) -> str:

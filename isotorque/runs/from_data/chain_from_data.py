@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 from isotorque.learning.files.csv_samples import StaticSamples, joint_names_of, read_csv
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
 from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
+from isotorque.learning.learners.rigid.fitting.gains import GainGroup
+from isotorque.learning.learners.rigid.misread_samples import other_reading
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import ChainSymmetries
@@ -45,6 +48,10 @@ class ChainDataOptions:
         Of the random starts.
     learner : str
         ``rigid-chain``, or ``rigid-chain+gaussian-process`` for arms with cables and springs.
+    unknown_gains : bool
+        Whether torques are in units of their own at every joint.
+    known_gains : tuple of str
+        ``JOINT=GAIN`` of those joints whose units are known.
     """
 
     file: Path
@@ -52,8 +59,16 @@ class ChainDataOptions:
     angle_noise: float | None = None
     seed: int = 0
     learner: str = RIGID
+    unknown_gains: bool = False
+    known_gains: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if self.known_gains and not self.unknown_gains:
+            value, accepted = " ".join(self.known_gains), "this together with --unknown-gains"
+            raise InputError("command line", "--known-gain", value, accepted)
+        if self.unknown_gains and self.learner == WITH_PROCESS:
+            accepted = f"nothing with {WITH_PROCESS}, which takes gains as known"
+            raise InputError("command line", "--unknown-gains", "given", accepted)
         if self.learner not in WITHOUT_ROBOT:
             accepted = f"{' or '.join(WITHOUT_ROBOT)}, which need no robot; or a ROBOT"
             raise InputError("command line", "--learner", self.learner, accepted)
@@ -78,6 +93,8 @@ class ChainFromData:
         Fitted; ``verdict_`` says whether it may be used.
     symmetries : ChainSymmetries or None
         None where the chain was not accepted, and where it is not alone.
+    other_reading : str or None
+        What would make the samples those of a rigid chain, where they are none as they stand.
     """
 
     options: ChainDataOptions
@@ -85,6 +102,7 @@ class ChainFromData:
     samples: StaticSamples
     learner: RigidChain | RigidChainProcess
     symmetries: ChainSymmetries | None
+    other_reading: str | None = None
 
     def save(self, out: Path) -> Path | None:
         """Write model and relations; None, and nothing, where the chain was not accepted."""
@@ -116,6 +134,7 @@ class ChainFromData:
             "verdict": str(verdict),
             "accepted": verdict.accepted,
             "missing": learner.remark_ or None,
+            "explained_if": self.other_reading,
             "model": None if model is None else str(model),
         }
         if isinstance(learner, RigidChain):
@@ -141,7 +160,17 @@ class ChainFromData:
                 "relations": self.symmetries.group.order,
                 "statement": self.symmetries.statement,
             }
+            if learner.gain_groups_:
+                gains = learner.chain_.gains
+                found["gains"] = [self._gains(group, gains) for group in learner.gain_groups_]
         return found
+
+    def _gains(self, group: GainGroup, gains: Array) -> dict[str, Any]:
+        """Return gains that are known relative to each other."""
+        return {
+            "gains": {self.joint_names[j]: float(gains[j]) for j in group.joints},
+            "common_factor_known": group.scale_known,
+        }
 
     def _box(self) -> Array:
         return np.array([self.samples.q.min(axis=0), self.samples.q.max(axis=0)])
@@ -150,6 +179,37 @@ class ChainFromData:
         """Configurations within the ranges of the recording."""
         low, high = self._box()
         return np.asarray(np.random.default_rng(0).uniform(low, high, (count, len(low))))
+
+
+def gains_by_joint(texts: Sequence[str], joint_names: Sequence[str]) -> list[float | None]:
+    """Known gains in the order of the joints, None for the others.
+
+    Raises
+    ------
+    InputError
+        For a text that is not ``JOINT=GAIN`` with a joint of the recording and a number other
+        than 0, and for a joint that is named twice.
+
+    Examples
+    --------
+    >>> gains_by_joint(["elbow=2.5"], ["shoulder", "elbow"])
+    [None, 2.5]
+    """
+    gains: list[float | None] = [None] * len(joint_names)
+    for text in texts:
+        name, _, value = text.partition("=")
+        try:
+            gain = float(value)
+        except ValueError:
+            gain = 0.0
+        if name not in joint_names or gain == 0.0 or not np.isfinite(gain):
+            accepted = f"JOINT=GAIN, a number other than 0, one of {', '.join(joint_names)}"
+            raise InputError("command line", "--known-gain", text, accepted)
+        place = list(joint_names).index(name)
+        if gains[place] is not None:
+            raise InputError("command line", "--known-gain", text, f"one gain for {name}")
+        gains[place] = gain
+    return gains
 
 
 def relations_of_saved_chain(out: Path) -> dict[str, Any] | None:
@@ -230,11 +290,18 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
             torque_noise=(options.torque_noise or 0.0) if stated else None,
             angle_noise=options.angle_noise or 0.0,
             unknown_offsets=offsets,
+            unknown_gains=options.unknown_gains,
+            known_gains=known,
             random_state=options.seed,
         ).fit(q, tau)
 
-    learner = fitted(False)
+    known = gains_by_joint(options.known_gains, names) if options.unknown_gains else None
+    plain = learner = fitted(False)
     if learner.verdict_ not in (Verdict.ROUNDING, Verdict.CHI_SQUARE, Verdict.TOO_FEW):
         learner = fitted(True)
-    symmetries = learner.symmetries() if learner.verdict_.accepted else None
-    return ChainFromData(options, names, samples, learner, symmetries)
+    if learner.verdict_.accepted:
+        return ChainFromData(options, names, samples, learner, learner.symmetries())
+    reading = None
+    if learner.verdict_ is Verdict.MISFIT:
+        reading = other_reading(plain, q, tau, names)
+    return ChainFromData(options, names, samples, learner, None, reading)

@@ -73,20 +73,43 @@ def test_too_few_poses_say_how_many_are_missing_and_leave_nothing(tmp_path, caps
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("change", "reading"),
     [
-        lambda q, tau: (np.rad2deg(q), tau),
-        lambda q, tau: (q, tau[:, [0, 2, 1, 3, 4, 5, 6]]),
-        lambda q, tau: (q, tau + 3.0 * q),
+        (lambda q, tau: (np.rad2deg(q), tau), "the angles are in degrees"),
+        (lambda q, tau: (q, tau + 3.0 * q), None),
     ],
+    ids=["degrees", "spring"],
 )
-def test_what_is_no_rigid_chain_is_not_a_model(change, tmp_path, capsys):
-    """Degrees, swapped columns, springs."""
+def test_what_is_no_rigid_chain_is_not_a_model(change, reading, tmp_path, capsys):
+    """What it would be if it were read otherwise is said; a spring is no reading."""
     data, out = tmp_path / "poses.csv", tmp_path / "out"
     recording(data, 20, noise=0.02, change=change)
     assert isotorque("learn", "--data", data, "--out", out, "--torque-noise", 0.02) == 1
-    assert "no chain that was found explains" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "no chain that was found explains" in said
+    assert ("explains all of them if" in said) == (reading is not None)
+    assert (reading or "") in said
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--known-gain", "elbow=2"), "--unknown-gains"),
+        (("--unknown-gains", "--known-gain", "nose=2"), "base, shoulder"),
+        (("--unknown-gains", "--known-gain", "elbow=0"), "other than 0"),
+        (("--unknown-gains", "--known-gain", "elbow=1", "--known-gain", "elbow=2"), "one gain"),
+        (("--unknown-gains", "--learner", "rigid-chain+gaussian-process"), "gains as known"),
+        (("--learner", "rigid-chain+gaussian-process", "--angle-noise", "0.1"), "exact"),
+    ],
+)
+def test_gains_that_cannot_be_used_are_one_line(options, words, tmp_path, capsys):
+    recording(tmp_path / "poses.csv", 8)
+    data = ("--data", tmp_path / "poses.csv", "--out", tmp_path / "x")
+    assert isotorque("learn", *data, *options) == 2
+    error = capsys.readouterr().err.strip()
+    assert words in error
+    assert len(error.splitlines()) == 1
 
 
 @pytest.mark.parametrize(
