@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,8 @@ from numba import config, njit
 from numba.cpython.unsafe.tuple import tuple_setitem as tuple_setitem
 
 from isotorque.symbolic.common.cache_folders import can_write, user_cache
+
+PACKAGE = Path(__file__).parents[2]
 
 
 def compiled(function: Callable[..., Any] | None = None, /, **options: Any) -> Any:
@@ -35,12 +40,14 @@ def compiled(function: Callable[..., Any] | None = None, /, **options: Any) -> A
     -----
     The result is kept in ``$NUMBA_CACHE_DIR``, beside the source, or in the cache of the user,
     whichever can be written first, and nowhere if none can: then it is compiled in each process.
+    Results name the modules of what they were compiled with, and cannot be read once one of these
+    has another name, in a later version say: folders are named after the names of all modules.
 
     Examples
     --------
     >>> import isotorque.symbolic.gravity.recursion as module
     >>> folder = cache_folder(Path(module.__file__).parent)
-    >>> folder is None or folder.is_dir()
+    >>> folder is None or folder.name.startswith("numba-")
     True
     """
     if function is None:
@@ -57,10 +64,20 @@ def source_folder(function: Callable[..., Any]) -> Path:
 def cache_folder(beside: Path) -> Path | None:
     """Return the folder to keep compiled functions of a source folder in; None if there is none."""
     given = [Path(config.CACHE_DIR).absolute()] if config.CACHE_DIR else []
-    for folder in (*given, beside / "__pycache__"):
-        if can_write(folder):
-            return folder
-    return user_cache()
+    places = (folder for folder in (*given, beside / "__pycache__") if can_write(folder))
+    place = next(places, None) or user_cache()
+    return None if place is None else place / f"numba-{module_names(PACKAGE)}"
+
+
+@cache
+def module_names(package: Path) -> str:
+    """Return a short hash of the names of all modules of a package, its links followed."""
+    names = hashlib.sha256()
+    for folder, inside, files in os.walk(package, followlinks=True):
+        inside.sort()
+        modules = sorted(name for name in files if name.endswith(".py"))
+        names.update(f"{os.path.relpath(folder, package)}: {modules}\n".encode())
+    return names.hexdigest()[:12]
 
 
 @contextmanager
