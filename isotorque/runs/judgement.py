@@ -49,12 +49,12 @@ Array = NDArray[np.float64]
 
 PAPER_RMSE = 0.0053
 """The paper's 2R result [N m] (section 7.1.1), drawn as a line to compare with."""
-CURVE_TOLERANCE = 0.01
-"""Accuracy of the curves in pictures [N m]: finer than a line is wide."""
+CURVE_TOLERANCE = 4e-4
+"""Accuracy of the curves in pictures, of the joint's largest torque: finer than a line is wide."""
 STATIC_TORQUES = 1000
 """Random torques that the set of static torques is judged with."""
-EQUIVARIANCE = 1e-9
-"""Departure from equivariance that counts as none [N m]."""
+EQUIVARIANCE = 1e-10
+"""Departure from equivariance that counts as none, of the arm's largest torque."""
 
 
 def judge_run(run: RunOutcome) -> RunReport:
@@ -245,6 +245,7 @@ def _model(run: RunOutcome) -> ModelJudgement | None:
     # most learners only come near equivariance: that is measured, but nobody claims it
     allowed = run.options.tolerance
     tolerance = default_tolerance(run.gravity, run.robot.limits) if allowed is None else allowed
+    largest = float(run.gravity.potential.gradient_bound().max(initial=0.0))
     claimed = run.options.learner in EQUIVARIANT_LEARNERS and run.scheme.group is not None
     judgement = verify_model(
         run.scheme.learner,
@@ -255,7 +256,7 @@ def _model(run: RunOutcome) -> ModelJudgement | None:
         targets=targets,
         tolerance=tolerance,
         largest_tolerance=tolerance,
-        equivariance_tolerance=EQUIVARIANCE if claimed else None,
+        equivariance_tolerance=EQUIVARIANCE * largest if claimed else None,
     )
     named = {t.name: t for t in targets}
     results = tuple(
@@ -291,8 +292,9 @@ def _level_sets(run: RunOutcome) -> LevelSetReport | None:
     found = level_set(potential, target, group=run.group)
     curves: list[tuple[int, int, Array]] = []
     if run.robot.n == 2 and run.group.rank == 2:
-        for joint in range(2):
-            lines = level_curves(potential, joint, float(target[joint]), tolerance=CURVE_TOLERANCE)
+        for joint, bound in enumerate(potential.gradient_bound().tolist()):
+            accuracy = CURVE_TOLERANCE * bound
+            lines = level_curves(potential, joint, float(target[joint]), tolerance=accuracy)
             signs = np.sign(lines.torques).astype(int)
             curves += [(joint, int(s), c) for s, c in zip(signs, lines.curves, strict=True)]
     return LevelSetReport(

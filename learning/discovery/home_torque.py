@@ -22,10 +22,13 @@ VISIBLE = 0.05
 """Releases are compared where the first of them has moved so far [rad]."""
 TELLING = 0.2
 """A torque is told from the one before by this share of what is visible."""
-SMALLEST_TORQUE = 1e-3
+FIRST_CHANGE = 1e-3
 """First change of a joint's torque [N m]; it grows until it tells ..."""
-GROWTH, UNFELT, LARGEST_TORQUE = 4.0, 256.0, 1e4
+GROWTH, UNFELT, LARGEST_CHANGE = 4.0, 256.0, 1e9
 """... by this factor, up to so many times what told at the first joint that did, or [N m]."""
+FAR, SMALLEST_CHANGE = 0.2, 1e-15
+"""A change that moves the arm farther [rad] is made smaller, but not below [N m]: the motion is
+not linear in it."""
 ROUNDS = 8
 ERROR, TRIES = 0.01, 8
 """Home counts as held where it is kept under torque errors of 1 % (normal, of the largest torque
@@ -62,7 +65,7 @@ def find_home_torque(arm: ProfileArm) -> Search:
     yield outcome
     if outcome.kind is OutcomeKind.SETTLED:
         return np.zeros(len(home))
-    torque, begin = np.zeros(len(home)), np.full(len(home), SMALLEST_TORQUE)
+    torque, begin = np.zeros(len(home)), np.full(len(home), FIRST_CHANGE)
     for _ in range(ROUNDS):
         released = _release(arm, torque)
         yield released.outcome
@@ -90,21 +93,32 @@ def _telling_changes(
     under 256 times the change that told first are left out: gravity does not reach them.
     """
     told: dict[int, tuple[Array, Array]] = {}
-    moment, size, largest = _visible_at(fell), float(begin.min()), LARGEST_TORQUE
+    moment, size, largest = _visible_at(fell), float(begin.min()), LARGEST_CHANGE
+
+    def changed(joint: int, size: float) -> Generator[Outcome, None, tuple[Array, Array, float]]:
+        change = np.zeros(len(home))
+        change[joint] = size
+        played = _release(arm, torque + change)
+        yield played.outcome
+        moved = played.q - home
+        at = min(moment, len(moved) - 1)
+        return change, moved, float(np.abs(moved[at] - fell[at]).max())
+
     while len(told) < len(home) and size <= largest:
         for joint in np.flatnonzero(begin <= size):
             if joint in told:
                 continue
-            change = np.zeros(len(home))
-            change[joint] = size
-            played = _release(arm, torque + change)
-            yield played.outcome
-            moved = played.q - home
-            at = min(moment, len(moved) - 1)
-            if np.abs(moved[at] - fell[at]).max() >= TELLING * VISIBLE:
+            change, moved, told_by = yield from changed(joint, size)
+            least = size
+            while told_by > FAR and least > SMALLEST_CHANGE:
+                smaller, motion, by = yield from changed(joint, least / GROWTH)
+                if by < TELLING * VISIBLE:
+                    break
+                change, moved, told_by, least = smaller, motion, by, least / GROWTH
+            if told_by >= TELLING * VISIBLE:
                 told[int(joint)] = change, moved
-                begin[joint] = max(size / GROWTH, SMALLEST_TORQUE)
-                largest = min(largest, UNFELT * size)
+                begin[joint] = least / GROWTH
+                largest = min(largest, UNFELT * least)
         size *= GROWTH
     return list(told.values())
 

@@ -14,13 +14,16 @@ from isotorque.symbolic.common.angles import wrap
 
 Array = NDArray[np.float64]
 
-SMALLEST_TORQUE = 1e-3
-"""First torque tried at every joint [N m]."""
+FIRST_TORQUE = 1e-3
+"""First torque tried at every joint [N m]: minute for most arms, made smaller for others."""
 
 VISIBLE_MOTION = 0.1
 """A joint that has moved this far has shown its torque scale [rad]."""
 
-MOST_DOUBLINGS = 40
+SHRINKAGE, SHRINKINGS = 16.0, 10
+"""A first torque that carries a joint away is made smaller by this factor, so often at most."""
+
+MOST_DOUBLINGS = 80
 
 TRIES_PER_RAY = 8
 
@@ -58,14 +61,15 @@ def babble(
     Notes
     -----
     Joint by joint, a minute torque is added to the home torque and doubled until the arm visibly
-    moves: that is the scale. A joint that does not come to rest even under the minute torque has
-    no stiffness (a vertical first axis) and is driven no further. Then random rays from the home
-    torque are followed, each to where the arm gives way: in growing steps, then by bisection. So
-    the set of static torques becomes known up to its boundary.
+    moves: that is the scale. What is minute for one arm carries another one away: then the torque
+    is made smaller until the joint rests under it. A joint that neither rests nor moves far under
+    its torque has no stiffness (a vertical first axis) and is driven no further. Then random rays
+    from the home torque are followed, each to where the arm gives way: in growing steps, then by
+    bisection. So the set of static torques becomes known up to its boundary.
     """
     n = len(arm.q)
     size, centre = np.zeros(n), np.zeros(n)
-    home, first = np.array(arm.q), arm.apply(SMALLEST_TORQUE * np.eye(n)[0])
+    home, first = np.array(arm.q), arm.apply(FIRST_TORQUE * np.eye(n)[0])
     yield first
     begun: _Begun | None = (home, first)
     if first.kind is not OutcomeKind.SETTLED:
@@ -102,10 +106,11 @@ def _find_scale(
 ) -> Iterator[Outcome]:
     """Set ``size[joint]`` to a torque that visibly moves the joint; leave 0 where none holds.
 
-    ``begun``: where the minute torque was applied already, and what it led to.
+    ``begun``: where the first torque was applied already, and what it led to.
     """
     torque = np.zeros(len(size))
-    torque[joint] = SMALLEST_TORQUE
+    torque[joint] = FIRST_TORQUE
+    shrinkings = 0
     for _ in range(MOST_DOUBLINGS):
         if begun is None:
             before = np.array(arm.q, dtype=float)
@@ -113,10 +118,19 @@ def _find_scale(
             yield outcome
         else:
             (before, outcome), begun = begun, None
-        if outcome.kind is not OutcomeKind.SETTLED or outcome.torque[joint] == centre[joint]:
-            break
-        size[joint] = torque[joint]
-        if abs(float(wrap(outcome.q - before)[joint])) > VISIBLE_MOTION:
-            break
-        torque *= 2
+        moved = abs(float(wrap(outcome.q - before)[joint])) > VISIBLE_MOTION
+        if outcome.kind is OutcomeKind.SETTLED:
+            if outcome.torque[joint] == centre[joint]:
+                break
+            size[joint] = torque[joint]
+            if moved:
+                break
+            torque *= 2
+        else:
+            moved |= outcome.kind is OutcomeKind.LIMIT
+            if size[joint] or not moved or shrinkings == SHRINKINGS:
+                break
+            torque /= SHRINKAGE
+            shrinkings += 1
+            arm.go_home()
     arm.go_home()

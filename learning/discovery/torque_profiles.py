@@ -13,6 +13,10 @@ from isotorque.symbolic.common.errors import InputError
 Array = NDArray[np.float64]
 
 
+SAME_SIZE = 1e-9
+"""Sizes that differ by less, relative to the largest of the torques, count as equal."""
+
+
 @dataclass(frozen=True)
 class ProfileShape:
     """From which distributions torque profiles are drawn (p_n and p_tau of Algorithm 1).
@@ -90,7 +94,8 @@ def draw_profile(
     ([5.0, 1.0], [5.0, -1.0])
     """
     first, last = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
-    if first.shape != last.shape or not np.allclose(np.abs(first), np.abs(last), rtol=1e-9):
+    close = SAME_SIZE * float(np.abs(first).max(initial=0.0))
+    if first.shape != last.shape or not (np.abs(np.abs(first) - np.abs(last)) <= close).all():
         raise InputError("torque profile", "end", last.tolist(), f"+-{np.abs(first).tolist()}")
     if shape is None:
         shape = ProfileShape()

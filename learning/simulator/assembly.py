@@ -17,6 +17,7 @@ from isotorque.learning.simulator.dynamics.free_directions import (
 )
 from isotorque.learning.simulator.dynamics.home import STABLE, find_home
 from isotorque.learning.simulator.dynamics.mass_matrix_check import check_mass_matrix
+from isotorque.learning.simulator.dynamics.step_control import RESIDUAL
 from isotorque.learning.simulator.settings import PhysicsMode
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.joint_limits import check_limits
@@ -82,6 +83,7 @@ def assemble(
         limits=chosen_limits,
         anchor=free.anchor(chosen_damping),
         nudge=free.nudge(),
+        residual=RESIDUAL * free.torque_scale,
     )
     return Assembly(body, free, _home(robot, equations, free, chosen_limits, physics, home))
 

@@ -37,7 +37,7 @@ class SettleMode(StrEnum):
     """Which configuration is the sample of a settled arm."""
 
     FINISHED = "finished"
-    """The equilibrium the arm is converging to, to 1e-9 N m."""
+    """The equilibrium the arm is converging to, to 1e-11 of its largest torque."""
     RAW = "raw"
     """Where the arm was when the settle rule was met; its torque is off by some mN m."""
 

@@ -172,7 +172,7 @@ class StaticTorqueSet:
             if not admitted.all():
                 admitted |= nearer & self._shape.contains(scaled[:, active])
         if not active.all() and len(self):
-            allowed = 1e-6 * max(1.0, float(np.abs(self._high - self._low).max()))
+            allowed = 1e-6 * float(np.maximum(np.abs(self._low), np.abs(self._high)).max())
             admitted &= (np.abs(rows - self._low)[:, ~active] <= allowed).all(axis=1)
         return admitted if np.ndim(torque) == 2 else bool(admitted[0])
 
@@ -262,7 +262,7 @@ class StaticTorqueSet:
         """Follow the range of the held torques; it doubles only so often."""
         spread = np.where(self._high > self._low, self._high - self._low, 0.0)
         widest = float(spread.max())
-        spread = np.where(spread > 0.0, np.maximum(spread, NEVER_VARIED * widest), 1.0)
+        spread = np.where(spread > 0.0, np.maximum(spread, NEVER_VARIED * widest), widest or 1.0)
         scale = np.exp2(np.ceil(np.log2(spread)))
         if (scale == self._scale).all():
             return

@@ -17,6 +17,8 @@ _GRID = 128
 _ROUNDS = 8
 _MOST_PARTS = 64
 _WHERE = np.array([0.25, 0.5, 0.75])  # a midpoint alone would miss inflections
+_DEFAULT = 4e-8  # tolerance, as a share of the bound on the joint's torque
+_FINEST = 4e-11  # likewise: finer ones would be rounding, at thousands of points
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +42,7 @@ def level_curves(
     joint: int,
     torque: float,
     *,
-    tolerance: float = 1e-6,
+    tolerance: float | None = None,
     window: ArrayLike = ((-np.pi, np.pi), (-np.pi, np.pi)),
 ) -> LevelCurves:
     """Return the curves on which one joint needs plus or minus a torque.
@@ -54,8 +56,9 @@ def level_curves(
     torque
         Its size [N m].
     tolerance
-        Largest error of that torque anywhere on the polylines [N m]. The default gives thousands
-        of points per curve; 1e-3 is ample for a picture.
+        Largest error of that torque anywhere on the polylines [N m]. The default, 4e-8 of the
+        largest torque the joint can need, gives thousands of points per curve; 4e-4 of it is
+        ample for a picture.
     window : (2, 2) array
         Lower and upper end of both joint angles [rad].
 
@@ -95,14 +98,18 @@ def level_curves(
         raise InputError("level curves", "joint", joint, "0 or 1")
     if not np.isfinite(torque):
         raise InputError("level curves", "torque", torque, "a finite number [N m]")
-    if not (np.isfinite(tolerance) and tolerance >= 1e-9):
-        raise InputError("level curves", "tolerance", tolerance, "a number >= 1e-9 [N m]")
     ends = np.asarray(window, dtype=float)
     if ends.shape != (2, 2) or not np.isfinite(ends).all() or np.any(ends[:, 0] >= ends[:, 1]):
         raise InputError(
             "level curves", "window", ends.tolist(), "((low, high), (low, high)) [rad]"
         )
     component = potential.significant().to_float().derivative(joint)
+    bound = component.sup_bound()
+    if tolerance is None:
+        tolerance = _DEFAULT * bound
+    elif not (np.isfinite(tolerance) and tolerance > 0.0 and tolerance >= _FINEST * bound):
+        accepted = f"a number >= {_FINEST * bound:.3g} [N m]"
+        raise InputError("level curves", "tolerance", tolerance, accepted)
     levels = [abs(torque)] if torque == 0 else [abs(torque), -abs(torque)]
     curves: list[Floats] = []
     torques: list[float] = []

@@ -17,6 +17,9 @@ from isotorque.symbolic.level_sets.newton_search import SINGULAR, search
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
+SAME = 1e-8
+"""Torques that differ by less, relative to the largest of the level set, are the same."""
+
 
 @dataclass(frozen=True, eq=False)
 class LevelSet:
@@ -72,7 +75,7 @@ class LevelSet:
     def with_torque(self, torque: ArrayLike) -> LevelSet:
         """Return the members that need exactly ``torque`` (n,) [N m] (Eq. 2 of the paper)."""
         away = np.abs(self.torques - np.asarray(torque, dtype=float)).max(axis=1, initial=0.0)
-        return self._only(away <= 1e-8 * max(1.0, np.abs(self.torques).max(initial=0.0)))
+        return self._only(away <= SAME * np.abs(self.torques).max(initial=0.0))
 
     def _only(self, chosen: NDArray[np.bool_]) -> LevelSet:
         return LevelSet(

@@ -13,7 +13,7 @@ from isotorque.learning.simulator.compiled.step import (
     V_NEXT,
     evaluate_here,
 )
-from isotorque.learning.simulator.dynamics.step_control import CONTRACTION, NEWTON_STEPS, RESIDUAL
+from isotorque.learning.simulator.dynamics.step_control import CONTRACTION, NEWTON_STEPS
 
 
 @kernel
@@ -53,7 +53,7 @@ def finish(plant, q, v, torque, moves, scratch):
     Newton's method. The equilibrium is accepted only if the stiffness K is positive definite at
     both ends, every further step is at most a quarter of the one before (the discrete form of the
     Newton-Kantorovich condition, so there is one equilibrium near and it is this one), it lies
-    within the joint limits, and the torque is balanced to 1e-9 N m.
+    within the joint limits, and the torque is balanced to the plant's ``residual``.
 
     Along directions V that gravity does not feel, ``M a + D v = torque - g`` integrates to
     ``V' D dq = V' M v``: there the arm runs out under its damping. The anchor of the plant adds
@@ -81,7 +81,7 @@ def finish(plant, q, v, torque, moves, scratch):
             if k == 0:
                 for j in range(n):
                     step[i] += plant.anchor[i, j] * momentum[j]
-        if k > 0 and worst <= RESIDUAL:
+        if k > 0 and worst <= plant.residual:
             return _accept(plant, q, v, trial, moves)
         solve(scratch.factor, vectors[PIVOTS], step)
         length = 0.0

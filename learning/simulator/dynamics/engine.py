@@ -25,6 +25,8 @@ class Body:
         From `FreeDirections.anchor`.
     nudge : (n,) array
         From `FreeDirections.nudge` [N m].
+    residual : float
+        Imbalance allowed at a finished equilibrium [N m].
     """
 
     damping: Array
@@ -32,6 +34,7 @@ class Body:
     limits: Array
     anchor: Array
     nudge: Array
+    residual: float
 
 
 @dataclass(frozen=True, eq=False)

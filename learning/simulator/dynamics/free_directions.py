@@ -13,6 +13,8 @@ Array = NDArray[np.float64]
 
 _SAMPLES = 64
 _RELATIVE_ZERO = 1e-9
+_UNFELT = 1e-12  # [1/s^2]: stiffness over inertia; a pendulum would take weeks for one swing
+_NUDGE = 1e-11  # of the torque scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +32,16 @@ class FreeDirections:
         Projects torques and noise on the active subspace.
     stiffness_scale : (n,) array
         Largest stiffness of each joint that was met [N m/rad].
+    torque_scale : float
+        About the arm's largest gravity torque [N m]; where it feels none, what accelerates its
+        largest inertia by 1 rad/s^2.
     """
 
     basis: Array
     active: Array
     projector: Array
     stiffness_scale: Array
+    torque_scale: float
 
     @property
     def any(self) -> bool:
@@ -48,19 +54,20 @@ class FreeDirections:
         ``K + s D V V' D`` is regular where the stiffness K is on the active subspace; the scale s
         makes both parts about equally large.
         """
-        if not self.any:
+        largest = float(damping.max())
+        if not self.any or largest == 0.0:
             return np.zeros((len(damping), len(damping)))
-        scale = max(float(self.stiffness_scale.max()), 1e-3) / max(float(damping.max()), 1e-9) ** 2
+        scale = self.torque_scale / largest**2
         return scale * damping[:, None] * (self.basis.T @ self.basis)
 
     def nudge(self) -> Array:
-        """Return a disturbing torque (n,) of 1e-10 N m, nothing along free directions.
+        """Return a minute disturbing torque (n,) [N m], nothing along free directions.
 
         An arm balanced exactly on an unstable equilibrium stands on a knife's edge: rounding would
         decide when and where it falls. This disturbance decides instead, on every engine and
         machine alike; a settled arm is finished without it.
         """
-        return 1e-10 * self.projector @ np.cos(np.arange(len(self.projector)))
+        return _NUDGE * self.torque_scale * self.projector @ np.cos(np.arange(len(self.projector)))
 
     def active_stiffness(self, stiffness: Array) -> float:
         """Return the smallest eigenvalue of K on the active subspace, joints scaled to 1.
@@ -95,14 +102,16 @@ def find_free_directions(equations: Equations) -> FreeDirections:
     sampled = [equations.stiffness(q) for q in rng.uniform(-np.pi, np.pi, (_SAMPLES, n))]
     stacked = np.concatenate(sampled)
     scale = np.max([abs(np.diag(k)) for k in sampled], axis=0)
+    inertia = float(np.diag(equations.mass_matrix(np.zeros(n))).max())
     _, values, rows = np.linalg.svd(stacked)
-    rank = int((values > _RELATIVE_ZERO * max(values[0], 1e-12)).sum())
+    rank = int((values > max(_RELATIVE_ZERO * values[0], _UNFELT * inertia)).sum())
     active, basis = _split(_cleaned(rows[:rank].T @ rows[:rank]))
     return FreeDirections(
         basis=basis,
         active=active,
         projector=_cleaned(active.T @ active),
-        stiffness_scale=np.where(scale > _RELATIVE_ZERO * scale.max(), scale, 0.0),
+        stiffness_scale=np.where((rank > 0) & (scale > _RELATIVE_ZERO * scale.max()), scale, 0.0),
+        torque_scale=float(scale.max()) if rank else inertia,
     )
 
 

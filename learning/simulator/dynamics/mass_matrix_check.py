@@ -9,6 +9,7 @@ from isotorque.symbolic.common.errors import InputError
 
 _SAMPLES = 16
 _SMALLEST = 1e-9
+_ROUNDING = 1e-14  # of the arm's largest inertia
 
 
 def check_mass_matrix(equations: Equations, where: str, joint_names: tuple[str, ...]) -> None:
@@ -39,7 +40,7 @@ def check_mass_matrix(equations: Equations, where: str, joint_names: tuple[str, 
         diagonal = np.diag(mass)
         ratio = 0.0
         joint = int(np.argmin(diagonal))
-        if diagonal[joint] > 1e-12:
+        if diagonal[joint] > _ROUNDING * diagonal.max():
             scale = diagonal**-0.5
             values, vectors = np.linalg.eigh(mass * np.outer(scale, scale))
             ratio = float(values[0])

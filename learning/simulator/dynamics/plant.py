@@ -38,6 +38,8 @@ class Plant(NamedTuple):
         damping D and a scale s; zero where there are none. See `free_directions`.
     nudge : (n,) array
         Tiny disturbing torque [N m]: see `nudge`.
+    residual : float
+        Imbalance allowed at a finished equilibrium [N m].
     dry : bool
         Whether there is any Coulomb friction.
     """
@@ -51,6 +53,7 @@ class Plant(NamedTuple):
     limits: NDArray[np.float64]
     anchor: NDArray[np.float64]
     nudge: NDArray[np.float64]
+    residual: float
     dry: bool
 
 
@@ -119,6 +122,7 @@ def new_plant(chain: Chain, body: Body) -> Plant:
         np.array(body.limits, dtype=float, order="C"),
         np.array(body.anchor, dtype=float, order="C"),
         np.array(body.nudge, dtype=float),
+        float(body.residual),
         bool(np.any(body.coulomb)),
     )
 

@@ -19,7 +19,6 @@ from isotorque.learning.simulator.dynamics.step_control import (
     GROWTH,
     LONGEST_STEP,
     NEWTON_STEPS,
-    RESIDUAL,
     SAFETY,
     SHORTEST_STEP,
     SHRINKAGE,
@@ -55,6 +54,7 @@ class PinocchioEngine:
         self._anchor = body.anchor
         self._anchored = body.anchor * body.damping
         self._nudge = body.nudge
+        self._residual = body.residual
         self._rule = rule
         self._converges = not body.coulomb.any()
 
@@ -175,7 +175,7 @@ class PinocchioEngine:
             q = q + step
             missing = step_goal = torque - self.equations.gravity_torque(q)
             stiffness = self.equations.stiffness(q)
-            if largest(missing) <= RESIDUAL:
+            if largest(missing) <= self._residual:
                 definite = dposv(stiffness + self._anchored, missing)[2] == 0
                 inside = (self._limits[:, 0] <= q) & (q <= self._limits[:, 1])
                 return q if definite and inside.all() else None

@@ -1,7 +1,9 @@
 """The whole scheme: from robot to report, resumed, and on another robot."""
 
 import json
+import re
 import shutil
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -132,3 +134,21 @@ def test_other_robots(robot, order, tmp_path, capsys):
     document = json.loads(capsys.readouterr().out)
     assert document["symmetry"]["found"] == order
     assert document["symmetry"]["false"] == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("factor", [1e-6, 1e-4, 1e4, 1e6])
+def test_arms_of_any_size_pass(factor, tmp_path, capsys):
+    def times(match):
+        return f'{match[1]}="{factor * float(match[2])!r}"'
+
+    text = files("isotorque.symbolic").joinpath("robot_files/2r.urdf").read_text()
+    scaled = re.sub(r'((?<=mass )value|i[xyz][xyz]|effort)="([^"]*)"', times, text)
+    assert scaled.count(repr(5 * factor)) == 2
+    (tmp_path / "arm.urdf").write_text(scaled)
+    arguments = ["run", tmp_path / "arm.urdf", "--out", tmp_path / "out", "--samples", 150]
+    arguments += ["--learner", "recursive-least-squares", "--json", "--quiet"]
+    assert status([str(a) for a in arguments]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["symmetry"]["found"] == 8
+    assert document["totals"]["rmse_torque"] < 1e-4 * 24.5 * factor

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from isotorque.learning.arm import OutcomeKind
-from isotorque.learning.discovery.motor_babbling import SMALLEST_TORQUE, babble
+from isotorque.learning.discovery.motor_babbling import FIRST_TORQUE, babble
 from isotorque.learning.discovery.torque_limits import TorqueLimitedArm
 from isotorque.learning.discovery.torque_profile_discovery import DiscoverySettings, lead
 from isotorque.learning.exploration.guided_arm import LedArm
@@ -30,8 +30,8 @@ def test_an_arm_that_does_not_hang_is_driven_about_the_torque_that_holds_it():
 def test_a_hanging_arm_begins_with_a_minute_torque_and_no_search():
     outcomes, home = result(babble(SimulatedArm(ROBOT), np.random.default_rng(0), 30))
     assert home.tolist() == [0.0, 0.0]
-    assert outcomes[0].torque.tolist() == [SMALLEST_TORQUE, 0.0]
-    assert outcomes[1].torque.tolist() == [2 * SMALLEST_TORQUE, 0.0]
+    assert outcomes[0].torque.tolist() == [FIRST_TORQUE, 0.0]
+    assert outcomes[1].torque.tolist() == [2 * FIRST_TORQUE, 0.0]
 
 
 def test_nothing_more_is_tried_where_no_torque_is_found():

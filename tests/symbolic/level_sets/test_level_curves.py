@@ -122,3 +122,25 @@ def test_unusable_arguments_are_refused(change, match):
     arguments = {"potential": two_r(), "joint": 0, "torque": 1.0} | change
     with pytest.raises(InputError, match=match):
         level_curves(**arguments)
+
+
+@given(st.integers(-30, 30), st.integers(0, 1), st.floats(-0.9, 0.9))
+@settings(max_examples=10)
+def test_curves_do_not_depend_on_the_unit_of_torque(power, joint, share):
+    factor = 4.0**power
+    torque = share * two_r().gradient_bound()[joint]
+    usual = level_curves(two_r(), joint, torque, tolerance=1e-3)
+    other = level_curves(factor * two_r(), joint, factor * torque, tolerance=factor * 1e-3)
+    assert np.array_equal(factor * usual.torques, other.torques)
+    for one, two in zip(usual.curves, other.curves, strict=True):
+        assert np.array_equal(one, two)
+
+
+@pytest.mark.parametrize("factor", [1e-6, 1.0, 1e6])
+def test_the_default_tolerance_is_a_share_of_the_largest_torque(factor):
+    potential = factor * two_r()
+    for curve in level_curves(potential, 0, 5.0 * factor).curves:
+        error = np.abs(potential.gradient(along(curve))[:, 0]) - 5.0 * factor
+        assert np.abs(error).max() <= 1e-6 * factor
+    with pytest.raises(InputError, match=r"accepted: a number >= .* \[N m\]"):
+        level_curves(potential, 0, 5.0 * factor, tolerance=1e-10 * factor)

@@ -328,3 +328,15 @@ def test_no_search_ends_before_every_set_was_reached_several_times(monkeypatch, 
     assert len(found) > 0
     assert not found.complete
     assert found.fewest_hits >= 6
+
+
+@given(st.floats(-12, 12), st.sampled_from([(-0.9, 0.4), (1.2, 0.1), (2.0, -0.8), (2.6, 1.5)]))
+@settings(max_examples=15)
+def test_members_with_a_torque_are_those_of_its_signs_in_any_unit(power, q):
+    potential = 10.0**power * two_r()
+    torque = potential.gradient(q)
+    found = level_set(potential, torque)
+    exactly = found.with_torque(torque)
+    assert 0 < len(exactly) < len(found)
+    assert (np.sign(exactly.torques) == np.sign(torque)).all()
+    assert apart(np.array(q), exactly.configurations).min() < 1e-6

@@ -29,6 +29,7 @@ def free_body(n, damping=0.0, coulomb=0.0):
         limits=np.tile([-np.inf, np.inf], (n, 1)),
         anchor=np.zeros((n, n)),
         nudge=np.zeros(n),
+        residual=1e-9,
     )
 
 
