@@ -105,7 +105,7 @@ def _telling_changes(
         return change, moved, float(np.abs(moved[at] - fell[at]).max())
 
     while len(told) < len(home) and size <= largest:
-        for joint in np.flatnonzero(begin <= size):
+        for joint in np.flatnonzero(begin <= size).tolist():
             if joint in told:
                 continue
             change, moved, told_by = yield from changed(joint, size)
@@ -116,7 +116,7 @@ def _telling_changes(
                     break
                 change, moved, told_by, least = smaller, motion, by, least / GROWTH
             if told_by >= TELLING * VISIBLE:
-                told[int(joint)] = change, moved
+                told[joint] = change, moved
                 begin[joint] = least / GROWTH
                 largest = min(largest, UNFELT * least)
         size *= GROWTH

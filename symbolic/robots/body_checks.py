@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 LARGEST = 1e50
 """No number of an arm is that large; squares of products of three still fit into a double."""
+SMALLEST_MASS = 1e-12
+"""No arm weighs less [kg]; Pinocchio takes inertias of 1e-16 kg and less for none."""
 
 
 def check_body(body: ArmBody, where: str) -> None:
@@ -29,7 +31,8 @@ def check_body(body: ArmBody, where: str) -> None:
     ------
     InputError
         For numbers that are not finite, negative masses or damping, and placements that are not
-        rotations; naming the joint. Limits are looked at where they matter (`check_limits`).
+        rotations, naming the joint; for masses of all links that Pinocchio cannot add. Limits are
+        looked at where they matter (`check_limits`).
     """
     for field, accepted in (
         ("masses", "finite masses [kg]"),
@@ -45,6 +48,10 @@ def check_body(body: ArmBody, where: str) -> None:
                 raise InputError(where, f"{field} of joint '{name}'", values, accepted)
     if not np.all(np.abs(body.gravity) < LARGEST):
         raise InputError(where, "gravity", body.gravity, "a finite acceleration [m/s^2]")
+    weight = float(np.abs(body.masses).sum())
+    if 0.0 < weight < SMALLEST_MASS:
+        accepted = f"0, or at least {SMALLEST_MASS:g} kg"
+        raise InputError(where, "mass of all moving links", f"{weight:.3g} kg", accepted)
     for i, name in enumerate(body.joint_names):
         if body.masses[i] < 0:
             raise InputError(where, f"mass of joint '{name}'", body.masses[i], "a number >= 0 [kg]")

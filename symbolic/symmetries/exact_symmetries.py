@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.symbolic.common.connected_components import connected_components
+from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.block_group import BlockGroup
 from isotorque.symbolic.groups.product_group import ProductGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
@@ -15,6 +16,8 @@ from isotorque.symbolic.symmetries.phase_proof import PhaseProof
 
 RELATIVE = 1e-12
 """Float coefficients closer than this, relative to the largest, count as equal."""
+SMALLEST, LARGEST = 1e-150, 1e150
+"""Sizes of potentials [J] whose squares and quotients floating point can hold."""
 
 
 def exact_symmetries(
@@ -88,9 +91,22 @@ def specialised(potential: TrigonometricPolynomial) -> TrigonometricPolynomial:
 
     A symmetry for all values of the symbols is one for generic values, so no symmetry is lost;
     what holds for all values is checked again, symbolically, by the proof.
+
+    Raises
+    ------
+    InputError
+        For a potential too small or too large for floating point.
     """
     if not potential.is_symbolic:
-        return potential.to_float()
+        try:
+            numeric = potential.to_float()
+            largest = float(numeric.amplitudes().max(initial=0.0))
+        except OverflowError:
+            largest = np.inf
+        if largest and not SMALLEST <= largest <= LARGEST:
+            accepted = f"0, or {SMALLEST:g} to {LARGEST:g} [J]"
+            raise InputError("symmetries", "largest amplitude of the potential", largest, accepted)
+        return numeric
     import sympy
 
     symbols = sorted(
