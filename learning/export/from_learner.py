@@ -77,7 +77,8 @@ def _trigonometric(learner: EquivariantTrigonometric) -> Waves:
     arrays = learner.to_arrays()
     a, b = np.split(arrays["coefficients"], 2)
     if learner.potential:
-        return Waves.of_potential(arrays["frequencies"], a[:, 0], b[:, 0])
+        waves = Waves.of_potential(arrays["frequencies"], a[:, 0], b[:, 0])
+        return waves.with_constants(arrays["offsets"])
     return Waves(np.rint(arrays["frequencies"]).astype(np.int64), a, b).without_rounding()
 
 

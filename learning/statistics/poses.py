@@ -173,6 +173,34 @@ def by_pose(q: Array, tau: Array) -> tuple[Poses, Array, Array]:
     return poses, poses.configurations(q), poses.means(tau)
 
 
+def weighed_by_pose(q: Array, tau: Array, weight: Array) -> tuple[Array, Array, Array]:
+    """One sample per pose for least squares: weighted means, with the weights of the rows summed.
+
+    What is fitted is what the rows would give; what is left over counts by pose.
+
+    Parameters
+    ----------
+    q, tau : (N, n), (N, k) arrays
+        Rows [rad], [N m].
+    weight : (N,) array
+        Of the squared errors of the rows.
+
+    Examples
+    --------
+    >>> q, tau, weight = np.array([[0.5], [0.5]]), np.array([[1.0], [4.0]]), np.array([2.0, 1.0])
+    >>> [x.tolist() for x in weighed_by_pose(q, tau, weight)]
+    [[[0.5]], [[2.0]], [3.0]]
+    """
+    poses = group_poses(q)
+    if not poses.repeated:
+        return q, tau, weight
+    total = np.bincount(poses.label, weight, poses.count)
+    share = weight * poses.rows[poses.label] / np.maximum(total, 1e-300)[poses.label]
+    first = q[poses._first()]
+    moved = poses.means(share[:, None] * wrap(q - first[poses.label]))
+    return first + moved, poses.means(share[:, None] * tau), total
+
+
 def _repeated(places: Array, box: Array, exact: Labels) -> Labels:
     """Labels at the largest distance with a gap beyond; the exact ones where there is none."""
     labels, total = [exact], len(places)

@@ -86,6 +86,16 @@ class Waves:
         a, b = (np.asarray(x, dtype=float)[:, None] for x in (cos, sin))
         return cls(k, b * k, -a * k).without_rounding()
 
+    def with_constants(self, torque: Array) -> Waves:
+        """The same and a constant torque (n,) of every joint [N m], unless all are zero."""
+        if not torque.any():
+            return self
+        return Waves(
+            np.vstack([self.frequencies, np.zeros_like(self.frequencies[:1])]),
+            np.vstack([self.cos, torque]),
+            np.vstack([self.sin, np.zeros_like(torque)]),
+        )
+
     def without_rounding(self) -> Waves:
         """The same without terms that are rounding beside the largest."""
         size = np.maximum(np.abs(self.cos), np.abs(self.sin)).max(axis=1, initial=0.0)

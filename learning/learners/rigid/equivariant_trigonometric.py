@@ -23,6 +23,8 @@ from isotorque.learning.learners.sample_checks import (
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
+from isotorque.learning.statistics.constant_torques import constant_torques
+from isotorque.learning.statistics.poses import weighed_by_pose
 from isotorque.learning.statistics.shrinkage import shrunk_least_squares
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
@@ -49,7 +51,10 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
     ----------
     n_coefficients_ : int
         Numbers to be determined; samples give n equations each for a potential, one each per
-        joint otherwise.
+        joint otherwise. Constants not counted.
+    offsets_ : (n,) array
+        Constant torques of the joints that the samples show beside a potential [N m]; 0 where they
+        show none. ``predict`` contains them; gravity alone is ``predict(q) - offsets_``.
 
     Notes
     -----
@@ -60,7 +65,10 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
     are not known but the arm is rigid. Springs, cables and bending are not in it, and its
     residuals say so; use ``SymmetricGaussianProcess`` or ``RecursiveLeastSquares`` then. Samples
     from a narrow region leave coefficients open; noise would make them huge, so they are kept as
-    small as the torques, and ``standard_error`` says where nothing is known. Without
+    small as the torques, and ``standard_error`` says where nothing is known. What is predicted is
+    the torque that would be measured: of a potential, which has the group, and a constant of every
+    joint where the samples show one (`constant_torques`), say a sensor's zero, which is no gravity
+    and has no symmetry. Rows of one pose count as one sample in standard errors. Without
     a group the number of frequencies grows as 3^n: up to six joints or so.
 
     Examples
@@ -111,33 +119,34 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         self._check_parameters()
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
         self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
+        self.n_samples_seen_ = len(q)
+        q, torque, weights = weighed_by_pose(q, torque, weights)
         root = np.sqrt(weights)[:, None]
         self._roots: list[Array] = []
         self._largest = float(np.abs(torque).max(initial=0.0))
+        self.offsets_ = np.zeros(self.n_outputs_)
         if self.potential:
-            features = self._gradients(q) * root[:, :, None]
-            self._coefficients = (
-                self._bases[0]
-                @ self._solve(
-                    features.reshape(-1, features.shape[2]) @ self._bases[0],
-                    (torque * root).ravel(),
-                )[:, None]
-            )
+            columns = self._gradients(q) @ self._bases[0]
+            self._constant = constant_torques(columns, torque, weights)
+            columns = self._with_constants(columns) * root[:, :, None]
+            solution = self._solve(columns.reshape(torque.size, -1), (torque * root).ravel())
+            count = self._bases[0].shape[1]
+            self._coefficients = self._bases[0] @ solution[:count, None]
+            self.offsets_[self._constant] = solution[count:]
         else:
             features = self._features(q) * root
             self._coefficients = np.zeros((features.shape[1], self.n_outputs_))
             for basis, joints in zip(self._bases, self._classes, strict=True):
                 solution = self._solve(features @ basis, (torque * root)[:, joints])
                 self._coefficients[:, joints] = basis @ solution
-        self.n_samples_seen_ = len(q)
         return self
 
     def predict(self, X: Any) -> Array:
-        """Torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
+        """Measured torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
         fitted(self)
         q = checked_configurations(self, X, first=False)
         if self.potential:
-            result = self._weighted_gradients(q)
+            result = self._weighted_gradients(q) + self.offsets_
         else:
             result = self._features(q) @ self._coefficients
         return result[:, 0] if self._flat else result
@@ -153,7 +162,7 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         q = checked_configurations(self, X, first=False)
         result = np.zeros((len(q), self.n_outputs_))
         if self.potential:
-            effect = self._gradients(q) @ (self._bases[0] @ self._roots[0])
+            effect = self._with_constants(self._gradients(q) @ self._bases[0]) @ self._roots[0]
             return np.asarray(np.linalg.norm(effect, axis=2))
         for basis, joints, root in zip(self._bases, self._classes, self._roots, strict=True):
             error = np.linalg.norm(self._features(q) @ (basis @ root), axis=1)
@@ -170,7 +179,7 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         )
 
     def fitted_potential(self) -> TrigonometricPolynomial:
-        """The potential [J] that was fitted, without terms below 1e-14 of the largest.
+        """The potential [J] of gravity that was fitted, without terms below 1e-14 of the largest.
 
         Raises
         ------
@@ -188,6 +197,12 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         if self.potential:
             return self._bases[0].shape[1]
         return sum(b.shape[1] * len(j) for b, j in zip(self._bases, self._classes, strict=True))
+
+    def _with_constants(self, columns: Array) -> Array:
+        """Columns (m, n, p) of the potential, and those of the constants that were seen."""
+        one = np.eye(columns.shape[1])[:, self._constant]
+        constants = np.broadcast_to(one, (len(columns), *one.shape))
+        return np.concatenate([columns, constants], axis=2)
 
     def _functions(self) -> list[tuple[int, TrigonometricPolynomial]]:
         columns = [0] * self.n_outputs_ if self.potential else range(self.n_outputs_)
@@ -224,18 +239,24 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
             solution, root = shrunk_least_squares(features, targets, self._largest)
             self._roots.append(root)
             return solution
-        more = np.sqrt(self.ridge) * np.eye(features.shape[1])
+        constants = len(self._constant) if self.potential else 0
+        more = np.sqrt(self.ridge) * np.eye(features.shape[1] - constants, features.shape[1])
         features = np.concatenate([features, more])
         targets = np.concatenate([targets, np.zeros((len(more), *targets.shape[1:]))])
         return np.asarray(lstsq(features, targets, cond=1e-12, check_finite=False)[0])
 
     def _arrays(self) -> dict[str, NDArray]:
-        return {"coefficients": self._coefficients.copy(), "frequencies": self._joint_frequencies}
+        return {
+            "coefficients": self._coefficients.copy(),
+            "frequencies": self._joint_frequencies,
+            "offsets": self.offsets_.copy(),
+        }
 
     def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
         if not np.array_equal(arrays["frequencies"], self._joint_frequencies):
             raise InputError("saved model", "frequencies", "others", "those of its group")
         self._coefficients = arrays["coefficients"]
+        self.offsets_ = arrays.get("offsets", np.zeros(self.n_outputs_))
 
     def _check_parameters(self) -> None:
         require(self, "ridge", 0 <= self.ridge < np.inf, "a number >= 0")

@@ -20,6 +20,8 @@ from isotorque.learning.learners.sample_checks import (
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
+from isotorque.learning.statistics.constant_torques import constant_torques
+from isotorque.learning.statistics.poses import weighed_by_pose
 from isotorque.learning.statistics.shrinkage import shrunk_least_squares
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.robot_options import RobotOptions
@@ -52,6 +54,9 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
     parameters_ : (4 n,) array
         For every joint's body: mass [kg] and mass times centre of mass in the joint's frame
         [kg m]. Physical only as far as identifiable.
+    offsets_ : (n,) array
+        Constant torques of the joints that the samples show beside gravity [N m]; 0 where they show
+        none. ``predict`` contains them; gravity alone is ``predict(q) - offsets_``.
     rank_ : int
         Number of combinations of parameters that the samples determine.
 
@@ -61,6 +66,10 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
     competitor: torques are linear in at most 4 n parameters, so a handful of samples gives the
     exact torque of a rigid arm. Prefer it whenever the kinematics is known and the arm is rigid.
     It is wrong where lengths or angles are; the learners that know nothing about the arm are not.
+
+    What is predicted is the torque that would be measured: of gravity, and a constant of every
+    joint where the samples show one (`constant_torques`), say a sensor's zero, which is no gravity.
+    Rows of one pose count as one sample in standard errors.
 
     The regressor is Pinocchio's ``computeJointTorqueRegressor`` without velocity and acceleration:
     of each body's ten columns the first four, mass and first moments. (``computeStaticRegressor``
@@ -119,20 +128,28 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
         self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
         self.n_samples_seen_ = len(q)
-        q, torque, weights = self._with_copies(q, torque, weights)
+        q, torque, weights = weighed_by_pose(q, torque, weights)
+        joints = constant_torques(self._regressors(q), torque, weights)
+        q, torque, weights, signs = self._with_copies(q, torque, weights)
         root = np.sqrt(weights)[:, None]
-        features = (self._regressors(q) * root[:, :, None]).reshape(torque.size, -1)
+        constants = (signs[:, :, None] * np.eye(q.shape[1]))[:, :, joints]
+        features = np.concatenate([self._regressors(q), constants], axis=2)
+        features = (features * root[:, :, None]).reshape(torque.size, -1)
         targets = (torque * root).ravel()
-        self._root = None
+        self._root, self._constant = None, joints
+        count = features.shape[1] - len(joints)
+        self.offsets_ = np.zeros(torque.shape[1])
         if self.ridge:
-            features = np.vstack([features, np.sqrt(self.ridge) * np.eye(features.shape[1])])
-            targets = np.append(targets, np.zeros(features.shape[1]))
-            self.parameters_, _, self.rank_, _ = lstsq(features, targets, cond=1e-11)
-            return self
-        self.rank_ = int(np.linalg.matrix_rank(features, rtol=1e-11))
-        gravity = max(float(np.linalg.norm(self._model.gravity.linear)), 1e-300)
-        largest = float(np.abs(targets).max(initial=0.0)) / gravity
-        self.parameters_, self._root = shrunk_least_squares(features, targets, largest)
+            penalty = np.sqrt(self.ridge) * np.eye(count, features.shape[1])
+            features, targets = np.vstack([features, penalty]), np.append(targets, np.zeros(count))
+            found, _, rank, _ = lstsq(features, targets, cond=1e-11)
+        else:
+            rank = np.linalg.matrix_rank(features, rtol=1e-11)
+            gravity = max(float(np.linalg.norm(self._model.gravity.linear)), 1e-300)
+            largest = float(np.abs(targets).max(initial=0.0)) / gravity
+            found, self._root = shrunk_least_squares(features, targets, largest)
+        self.rank_ = int(rank) - len(joints)
+        self.parameters_, self.offsets_[joints] = found[:count], found[count:]
         return self
 
     def standard_error(self, X: Any) -> Array | None:
@@ -145,24 +162,31 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         if root is None:
             return None
         q = checked_configurations(self, X, first=False)
-        return np.asarray(np.linalg.norm(self._regressors(q) @ root, axis=2))
+        constants = np.broadcast_to(
+            np.eye(q.shape[1])[:, self._constant], (len(q), q.shape[1], len(self._constant))
+        )
+        columns = np.concatenate([self._regressors(q), constants], axis=2)
+        return np.asarray(np.linalg.norm(columns @ root, axis=2))
 
     def predict(self, X: Any) -> Array:
-        """Torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
+        """Measured torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
         fitted(self)
         q = checked_configurations(self, X, first=False)
-        result = self._regressors(q) @ self.parameters_
+        result = self._regressors(q) @ self.parameters_ + self.offsets_
         return result[:, 0] if self._flat else result
 
-    def _with_copies(self, q: Array, torque: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Samples and their symmetric copies, moved in q no more than B q says."""
+    def _with_copies(
+        self, q: Array, torque: Array, weights: Array
+    ) -> tuple[Array, Array, Array, Array]:
+        """Samples and copies, moved in q no more than B q says, and the signs of torques."""
         if self.group is None:
-            return q, torque, weights
+            return q, torque, weights, np.ones(torque.shape)
         copies, torques = self._coordinates.copies(q, torque)
         basis = self._coordinates.basis
         moved = q + (copies - q @ basis.T) @ np.linalg.pinv(basis).T
         n = q.shape[1]
-        return moved.reshape(-1, n), torques.reshape(-1, n), np.tile(weights, len(copies))
+        signs = self._coordinates.copies(q, np.ones(torque.shape))[1].reshape(-1, n)
+        return moved.reshape(-1, n), torques.reshape(-1, n), np.tile(weights, len(copies)), signs
 
     def _regressors(self, q: Array) -> Array:
         """Derivatives of the torques by the parameters, (m, n, 4 n)."""
@@ -180,7 +204,7 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
             found = "standard input"
         if found is not None:
             raise InputError("StaticRegressor", "robot", found, "a name or file, to be saved")
-        return {"parameters": self.parameters_.copy()}
+        return {"parameters": self.parameters_.copy(), "offsets": self.offsets_.copy()}
 
     def parameters(self) -> dict[str, Any]:
         """Settings and counters as plain data; the options of the robot as in a recording."""
@@ -213,6 +237,7 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
                 "saved model", "robot", f"{name}, of other kinematics", "the arm it was fitted to"
             )
         self.parameters_, self.rank_ = arrays["parameters"], int(state["rank"])
+        self.offsets_ = arrays.get("offsets", np.zeros(self.n_outputs_))
 
     def _check_parameters(self) -> None:
         require(self, "robot", self.robot is not None, "a robot, a built-in name or a file")
