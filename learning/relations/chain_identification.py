@@ -14,6 +14,7 @@ from isotorque.learning.relations.learned_symmetries import (
 )
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.learning.relations.static_samples import static_samples
+from isotorque.learning.statistics.poses import by_pose
 
 Array = NDArray[np.float64]
 
@@ -74,6 +75,7 @@ def identify_by_chain(
 
     Notes
     -----
+    Rows of one pose count as one sample.
     Where one potential for all torques of any arm needs ``(3^n - 1) / n`` samples (`identify`), a
     chain needs four to eight, as it has 4 n - 1 numbers. Relations are those of the snapped chain;
     their bounds are of the arm that was measured (`chain_symmetries`).
@@ -91,6 +93,7 @@ def identify_by_chain(
     configurations, torques = static_samples(q, tau)
     if not len(torques) or not torques.any():
         return None
+    _, configurations, torques = by_pose(configurations, torques)
     learner = RigidChain(
         torque_noise=None if noise is None else noise.torque,
         angle_noise=0.0 if noise is None else noise.angle,

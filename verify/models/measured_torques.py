@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from isotorque.learning.statistics.poses import group_poses
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 
 Array = NDArray[np.float64]
@@ -18,12 +19,15 @@ class Disagreement:
 
     Attributes
     ----------
-    rows : int
-        Number of samples compared.
+    rows, poses : int
+        Number of rows compared, and of the poses they were recorded in.
     rmse : float
-        Root mean square of measured less analytic torques, over samples and joints [N m].
+        Root mean square of measured less analytic torques, over poses and joints [N m].
     rmse_by_joint, mean_by_joint : (n,) arrays
-        Root mean square and mean joint by joint [N m].
+        Root mean square and mean joint by joint [N m], over poses.
+    rmse_beside_constants : float
+        What ``rmse`` would be if the mean of every joint were a constant that its sensor adds to
+        gravity [N m].
     share : float
         ``rmse`` over the root mean square of the measured torques.
     largest : float
@@ -37,9 +41,11 @@ class Disagreement:
     """
 
     rows: int
+    poses: int
     rmse: float
     rmse_by_joint: Array
     mean_by_joint: Array
+    rmse_beside_constants: float
     share: float
     largest: float
     row: int
@@ -61,6 +67,10 @@ def disagreement(
     leave_out : (m,) bools, optional
         Samples that are not compared (outliers); not all of them.
 
+    Notes
+    -----
+    Rows of one pose count as one: each pose has the same weight.
+
     Examples
     --------
     >>> from isotorque.symbolic.robots.load_robot import load_robot
@@ -75,22 +85,24 @@ def disagreement(
     if leave_out is not None:
         numbers = np.flatnonzero(~np.asarray(leave_out, dtype=bool))
     samples, measured = samples[numbers], measured[numbers]
-    analytic = gravity.torque(samples)
-    difference = measured - analytic
-    size = _rms(measured)
+    difference = measured - gravity.torque(samples)
+    poses = group_poses(samples)
+
+    def rms(values: Array) -> float:
+        return float(np.sqrt(np.mean(poses.means(values**2))))
+
+    size, mean = rms(measured), poses.means(difference).mean(axis=0)
     row = int(np.argmax(np.abs(difference).max(axis=1)))
     return Disagreement(
         rows=len(numbers),
-        rmse=_rms(difference),
-        rmse_by_joint=np.sqrt(np.mean(difference**2, axis=0)),
-        mean_by_joint=difference.mean(axis=0),
-        share=_rms(difference) / size if size else 0.0,
+        poses=poses.count,
+        rmse=rms(difference),
+        rmse_by_joint=np.sqrt(np.mean(poses.means(difference**2), axis=0)),
+        mean_by_joint=mean,
+        rmse_beside_constants=rms(difference - mean),
+        share=rms(difference) / size if size else 0.0,
         largest=float(np.abs(difference[row]).max()),
         row=int(numbers[row]),
-        rmse_opposite=_rms(measured + analytic),
-        rmse_degrees=_rms(measured - gravity.torque(np.deg2rad(samples))),
+        rmse_opposite=rms(measured + gravity.torque(samples)),
+        rmse_degrees=rms(measured - gravity.torque(np.deg2rad(samples))),
     )
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))

@@ -19,7 +19,11 @@ from isotorque.learning.relations.testing.supported_group import SupportedGroup
 from isotorque.learning.statistics.extrapolation import extrapolation
 from isotorque.runs.experiment import Progress
 from isotorque.runs.from_data.data_relations import RelationsOfData
-from isotorque.runs.from_data.data_remarks import analytic_remarks, outlier_remarks
+from isotorque.runs.from_data.data_remarks import (
+    analytic_remarks,
+    constant_remarks,
+    outlier_remarks,
+)
 from isotorque.runs.lattice_learning import fitted_with_curve
 from isotorque.runs.learned_model import LearnedModel
 from isotorque.runs.learning_curve import DenseTest
@@ -154,6 +158,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
         curve,
         (
             *found.remarks,
+            *constant_remarks(learner, robot),
             *([beyond.remark] if beyond.remark else []),
             *outlier_remarks(tried, options.drop_outliers, WORST),
             *analytic_remarks(compared, tried, samples, robot),
@@ -220,9 +225,11 @@ def _held_out(tried: HeldOut | None) -> dict[str, Any] | None:
 def _analytic(compared: Disagreement) -> dict[str, Any]:
     return {
         "rows": compared.rows,
+        "poses": compared.poses,
         "rmse": compared.rmse,
         "rmse_by_joint": compared.rmse_by_joint,
         "mean_by_joint": compared.mean_by_joint,
+        "rmse_beside_constants": compared.rmse_beside_constants,
         "share": compared.share,
         "largest": compared.largest,
         "largest_row": compared.row + 1,

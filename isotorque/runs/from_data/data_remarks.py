@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from isotorque.learning.files.csv_samples import StaticSamples
@@ -9,6 +11,8 @@ from isotorque.learning.learners.cross_validation import HeldOut
 from isotorque.symbolic.robots.load_robot import Robot
 from isotorque.verify.models.measured_torques import Disagreement
 
+CONSTANT = 2.0
+"""Times that constants of the joints must lower a disagreement to be told."""
 SYSTEMATIC = 2.0
 """Times the held-out error from which a disagreement is no accident of single samples."""
 MUCH_BETTER = 3.0
@@ -43,12 +47,18 @@ def analytic_remarks(
             robot.joint_names, compared.rmse_by_joint, compared.mean_by_joint, strict=True
         )
     )
-    data = f"data ({compared.rows} rows)"
+    repeated = f", {compared.poses} poses" if compared.poses < compared.rows else ""
+    data = f"data ({compared.rows} rows{repeated})"
     said = (
         f"{data} less analytic gravity of {robot.name}: {compared.rmse:.4g} N m RMSE, "
         f"{100 * compared.share:.3g} % of the torques; {joints}; at most "
         f"{compared.largest:.4g} N m (row {compared.row + 1})"
     )
+    if CONSTANT * compared.rmse_beside_constants < compared.rmse and compared.poses > 1:
+        said += (
+            f"; {compared.rmse_beside_constants:.4g} N m RMSE beside gravity and a constant torque "
+            "of each joint, its mean"
+        )
     if tried is not None and tried.rmse_of_others > 0:
         times = compared.rmse / tried.rmse_of_others
         if times > SYSTEMATIC:
@@ -67,6 +77,20 @@ def analytic_remarks(
     if far:
         remarks.append(f"{far} rows lie outside the joint limits of {robot.name}")
     return tuple(remarks)
+
+
+def constant_remarks(learner: Any, robot: Robot) -> tuple[str, ...]:
+    """Say which constant torques a model contains: sensors show them, gravity has none."""
+    offsets = np.asarray(getattr(learner, "offsets_", np.zeros(robot.n)))
+    found = [
+        f"{offsets[j]:+.3g} N m on {robot.joint_names[j]}" for j in np.flatnonzero(offsets).tolist()
+    ]
+    if not found:
+        return ()
+    return (
+        f"the model contains constant torques, {', '.join(found)}: it predicts what sensors show, "
+        "and errors beside analytic gravity contain them",
+    )
 
 
 def _outside(samples: StaticSamples, robot: Robot) -> int:

@@ -16,6 +16,7 @@ from isotorque.learning.relations.potential.errors_in_variables import Measureme
 from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.relations.testing.judge_candidates import Judgement
 from isotorque.learning.relations.testing.subgroup_test import GroupTrial, over_joints
+from isotorque.learning.statistics.poses import by_pose
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.subgroups import generated, largest_subgroups
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
@@ -138,6 +139,7 @@ def supported_group(
 
     Notes
     -----
+    Rows of one pose count as one sample.
     The torque of each joint is fitted twice by least squares: by functions of y = B q that have the
     symmetry (`torque_basis`), and by more. If the symmetry holds, the further functions explain
     the residuals of the first fit no better than chance: F test, or chi-square where the noise is
@@ -178,6 +180,7 @@ def supported_group(
         raise InputError("samples", "number of joints", configurations.shape[1], f"{group.n}")
     if not 0.0 < level < 1.0:
         raise InputError("supported group", "level", level, "0 < number < 1")
+    _, configurations, torques = by_pose(configurations, torques)
     trial = GroupTrial(group, configurations, torques, noise)
     free = trial.free_directions()
     if free < level:

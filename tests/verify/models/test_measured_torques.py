@@ -50,3 +50,23 @@ def test_no_torque_at_all():
     found = disagreement([[np.pi / 2, 0.0]], [[0.0, 0.0]], GRAVITY)
     assert found.share == 0.0
     assert found.rmse == pytest.approx(0.0, abs=1e-12)
+
+
+def test_rows_of_one_pose_count_once():
+    rng = np.random.default_rng(1)
+    q = rng.uniform(-3, 3, (8, 2))
+    torque = GRAVITY.torque(q) + rng.normal(size=(8, 2))
+    counts = np.array([1, 60, 1, 1, 1, 1, 1, 1])
+    rows = np.repeat(np.arange(8), counts)
+    once, often = disagreement(q, torque, GRAVITY), disagreement(q[rows], torque[rows], GRAVITY)
+    assert (often.rows, often.poses, once.poses) == (67, 8, 8)
+    for field in ("rmse", "rmse_by_joint", "mean_by_joint", "share", "rmse_beside_constants"):
+        np.testing.assert_allclose(getattr(often, field), getattr(once, field), rtol=1e-9)
+
+
+def test_a_constant_is_told_from_the_rest():
+    q = np.random.default_rng(2).uniform(-3, 3, (50, 2))
+    wrong = 0.1 * np.random.default_rng(3).normal(size=(50, 2))
+    found = disagreement(q, GRAVITY.torque(q) + wrong + np.array([0.0, 5.0]), GRAVITY)
+    assert found.rmse > 3.0
+    assert found.rmse_beside_constants == pytest.approx(np.std(wrong, axis=0).mean(), rel=0.05)

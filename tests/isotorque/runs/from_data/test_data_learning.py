@@ -192,3 +192,28 @@ def test_options_that_have_no_meaning_are_refused(learn, tmp_path, options, word
 
 def test_a_missing_file_is_named(learn, tmp_path):
     assert "nowhere.csv" in learn(tmp_path, "nowhere.csv", expect=2)
+
+
+@pytest.mark.parametrize("learner", ["trigonometric", "parametric"])
+def test_a_constant_of_a_sensor_is_told_apart_from_gravity(learn, tmp_path, learner):
+    path = recording(tmp_path / "cable.csv", change=lambda q, tau: tau + np.array([0.0, 0.2]))
+    found = learn(tmp_path, path, "--learner", learner)
+    said = next(remark for remark in found["remarks"] if "contains constant torques" in remark)
+    assert float(said.split("torques, ")[1].split(" N m")[0]) == pytest.approx(0.2, abs=0.02)
+    analytic = found["data"]["analytic"]
+    assert analytic["rmse"] > 0.1
+    assert analytic["rmse_beside_constants"] == pytest.approx(NOISE, rel=0.3)
+    assert found["data"]["held_out"]["rmse"] == pytest.approx(NOISE, rel=0.3)
+    assert any("beside gravity and a constant torque" in remark for remark in found["remarks"])
+
+
+def test_poses_are_counted_not_rows(learn, tmp_path):
+    rng = np.random.default_rng(7)
+    q = rng.uniform(-2.0, 2.0, (8, 2))
+    tau = GRAVITY.torque(q) + rng.normal(size=q.shape)
+    rows = np.repeat(np.arange(8), 25)
+    path = tmp_path / "dwell.csv"
+    write_csv(path, StaticSamples(q[rows], tau[rows]), ROBOT.joint_names)
+    data = learn(tmp_path, path, "--symmetries", "none", "--learner", "trigonometric")["data"]
+    assert (data["rows"], data["analytic"]["poses"], data["held_out"]["poses"]) == (200, 8, 8)
+    assert data["held_out"]["rmse"] > 1.0

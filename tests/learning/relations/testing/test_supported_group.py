@@ -201,3 +201,16 @@ def test_refusals():
         supported_group(arm.group, q, torque, level=0.0)
     with pytest.raises(InputError, match="shape of tau"):
         supported_group(arm.group, q, torque[:-1])
+
+
+def test_a_pose_that_was_recorded_often_is_one_sample():
+    """What sticks for a whole pose contradicts nothing by being recorded 25 times."""
+    arm = Arm("2r")
+    rng = np.random.default_rng(4)
+    q, tau = arm.recorded(40, 4, 0.0, 0.3)
+    rows = np.repeat(np.arange(40), 25)
+    once = supported_group(arm.group, q, tau)
+    often = supported_group(arm.group, q[rows] + 1e-6 * rng.normal(size=(1000, 2)), tau[rows])
+    assert once.whole
+    assert often.whole
+    assert often.p_value == pytest.approx(once.p_value, rel=1e-2)
