@@ -194,7 +194,7 @@ def weighed_by_pose(q: Array, tau: Array, weight: Array) -> tuple[Array, Array, 
     poses = group_poses(q)
     if not poses.repeated:
         return q, tau, weight
-    total = np.bincount(poses.label, weight, poses.count)
+    total = poses.means(weight[:, None])[:, 0] * poses.rows
     share = weight * poses.rows[poses.label] / np.maximum(total, 1e-300)[poses.label]
     first = q[poses._first()]
     moved = poses.means(share[:, None] * wrap(q - first[poses.label]))
