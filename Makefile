@@ -11,7 +11,7 @@ OLDEST_TESTS := \
   tests/house tests/symbolic/gravity tests/symbolic/polynomials tests/symbolic/lattices \
   tests/symbolic/level_sets tests/symbolic/robots tests/learning/export tests/learning/files \
   tests/learning/learners/local_linear tests/learning/learners/memory tests/learning/simulator/compiled \
-  tests/verify/report tests/isotorque/test_parallel.py tests/isotorque/cli/test_command_line.py \
+  tests/verify/report tests/isotorque/test_parallel.py tests/isotorque/cli/every_command/test_command_line.py \
   tests/isotorque/cli/test_help_text.py tests/isotorque/cli/test_robot_options.py \
   tests/isotorque/cli/test_start.py isotorque/symbolic/common isotorque/symbolic/groups
 

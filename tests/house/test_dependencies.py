@@ -199,6 +199,15 @@ def test_the_newest_versions_are_all_set_and_none_is_older_than_the_oldest():
         assert as_numbers(newest[name]) >= as_numbers(version), name
 
 
+def test_the_tests_of_the_oldest_versions_exist():
+    [chosen] = re.findall(
+        r"^OLDEST_TESTS := ((?:.*\\\n)*.*)", (ROOT / "Makefile").read_text(), re.M
+    )
+    places = chosen.replace("\\\n", " ").split()
+    assert len(places) > 10
+    assert [place for place in places if not (ROOT / place).exists()] == []
+
+
 def as_numbers(version: str) -> tuple[int, ...]:
     """Return a version as numbers, to compare."""
     return tuple(map(int, version.split(".")))

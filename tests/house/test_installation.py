@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+import isotorque
+
 ROOT = Path(__file__).parents[2]
 SOURCE = (
     "isotorque",
@@ -187,7 +189,7 @@ def test_foreign_modules_of_the_same_names_are_neither_used_nor_hidden(environme
 
 
 def test_commands_work_outside_the_repository(environment):
-    assert "2r" in environment.isotorque("simulate", "2r", "--torque", "3,1")
+    assert environment.isotorque("simulate", "2r", "--torque", "3,1").startswith("settled")
     environment.isotorque(
         "run", "pendulum", "--learner", "recursive-least-squares", "--samples", "40", "--out", "out"
     )
@@ -200,6 +202,13 @@ def test_worker_processes_find_the_same_package(environment):
     )
     environment.python("-m", "isotorque", "sweep", "table.toml", "--jobs", "2", "--out", "sweep")
     assert any((environment.work / "sweep").iterdir())
+
+
+def test_the_version_is_told_by_the_package_and_by_its_metadata(environment):
+    says = "import isotorque; from importlib.metadata import version as v; print(v('isotorque'))"
+    assert environment.python("-c", f"{says}; print(isotorque.__version__)").split() == (
+        [isotorque.__version__] * 2
+    )
 
 
 def test_the_wheel_of_an_sdist_runs_the_whole_scheme(from_sdist):

@@ -87,6 +87,17 @@ def test_a_saved_model_predicts_and_goes_on_the_same(name, group, tmp_path):
     )
 
 
+def test_a_model_that_an_older_version_saved_is_loaded(tmp_path):
+    learner = online_learner("recursive-least-squares", GROUP).partial_fit(*samples(1, 10))
+    file = saved(tmp_path, learner) / "model.json"
+    document = json.loads(file.read_text())
+    assert document["versions"].keys() == {"python", "numpy", "pin", "numba", "isotorque"}
+    document["versions"] |= {"isotorque": "0.1.0", "numpy": "2.0.0"}
+    file.write_text(json.dumps(document))
+    q, _ = samples(2, 50)
+    np.testing.assert_array_equal(load_model(file).learner.predict(q), learner.predict(q))
+
+
 def test_nothing_is_pickled(tmp_path):
     learner = online_learner("recursive-least-squares", GROUP).partial_fit(*samples(1, 10))
     saved(tmp_path, learner)
