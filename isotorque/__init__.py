@@ -16,6 +16,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from isotorque.symbolic.common.version import VERSION
+
 if TYPE_CHECKING:
     from isotorque.learning.arm import Arm as Arm
     from isotorque.learning.arm import LimitHit as LimitHit
@@ -104,7 +106,7 @@ if TYPE_CHECKING:
     )
     from isotorque.verify.verdict import Verdict as Verdict
 
-__version__ = "0.2.0"
+__version__ = VERSION
 
 _HOME = {
     "Arm": "learning.arm",
