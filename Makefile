@@ -44,8 +44,10 @@ $(OLDEST)/.installed: pyproject.toml oldest-constraints.txt
 	$(OLDEST)/bin/python -m pip install --quiet --disable-pip-version-check -c oldest-constraints.txt -e '.[test]'
 	@touch $@
 
+# old packages beside new ones warn of each other: that is nobody's fault here
 test-oldest: $(OLDEST)/.installed ## run a share of the tests with the lowest versions declared
-	NUMBA_CACHE_DIR=$(abspath $(OLDEST))/numba $(OLDEST)/bin/python -m pytest -n 2 --dist worksteal $(OLDEST_TESTS)
+	NUMBA_CACHE_DIR=$(abspath $(OLDEST))/numba $(OLDEST)/bin/python -m pytest -n 2 --dist worksteal \
+	  -W ignore::DeprecationWarning $(OLDEST_TESTS)
 
 dist: $(VENV)/.installed-test ## build sdist and wheel of the last commit, from a clean export
 	rm -rf dist && mkdir dist

@@ -241,13 +241,14 @@ def _joint_names(root: Field, expected: Sequence[str] | None) -> tuple[str, ...]
 def _basis(field: Field, n: int) -> NDArray[np.int64]:
     rows = field.matrix(columns=n)
     small = bool(np.all(np.abs(rows) <= LARGEST_BASIS))
-    if (
-        not small
-        or not np.array_equal(rows, np.round(rows))
-        or np.linalg.matrix_rank(rows) < len(rows)
-    ):
+    if not small or not np.array_equal(rows, np.round(rows)) or not _independent(rows):
         field.refuse(f"linearly independent rows of integers up to {LARGEST_BASIS:,}")
     return rows.astype(np.int64)
+
+
+def _independent(rows: NDArray[np.float64]) -> bool:
+    """Say whether rows are linearly independent; NumPy 2.2 knows no rank of no rows."""
+    return not len(rows) or int(np.linalg.matrix_rank(rows)) == len(rows)
 
 
 def _relation(entry: Field, n: int, basis: NDArray[np.int64] | None) -> SymmetryRelation:
@@ -320,6 +321,6 @@ def _check_group_entries(
     if free is not None:
         directions = free.matrix(columns=n)
         rows = np.eye(n) if basis is None else basis.astype(float)
-        whole = len(directions) == n - r and np.linalg.matrix_rank(directions) == n - r
+        whole = len(directions) == n - r and _independent(directions)
         if not whole or np.any(np.abs(directions @ rows.T) > SAME):
             free.refuse(f"{n - r} independent directions v with B v = 0")

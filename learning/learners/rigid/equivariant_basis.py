@@ -52,7 +52,7 @@ def multi_affine_frequencies(basis: Array) -> Integers:
 def _independent(rows: Array) -> list[int]:
     """Columns that form an invertible square matrix."""
     chosen: list[int] = []
-    for j in range(rows.shape[1]):
+    for j in range(rows.shape[1] if len(rows) else 0):  # NumPy 2.2 knows no rank of no rows
         if np.linalg.matrix_rank(rows[:, [*chosen, j]]) > len(chosen):
             chosen.append(j)
     return chosen

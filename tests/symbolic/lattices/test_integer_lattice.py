@@ -69,7 +69,8 @@ def _circuits(K):
             part = K[list(rows)].astype(float)
             dependent = np.linalg.matrix_rank(part) < size
             minimal = all(
-                np.linalg.matrix_rank(np.delete(part, i, 0)) == size - 1 for i in range(size)
+                size == 1 or np.linalg.matrix_rank(np.delete(part, i, 0)) == size - 1
+                for i in range(size)
             )
             if dependent and minimal:
                 yield rows

@@ -38,7 +38,7 @@ def test_every_point_of_a_curve_needs_the_torque(a, b, joint, share):
         assert abs(level) == abs(torque)
         error = potential.gradient(along(curve))[:, joint] - level
         assert np.abs(error).max() <= 1e-4
-    if abs(share) > 1:
+    if abs(share) > 1 + 1e-12:  # what is closer is a curve of one point, to rounding
         assert not found.curves
 
 
