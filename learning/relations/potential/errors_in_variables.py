@@ -14,6 +14,7 @@ Frequencies = NDArray[np.int64]
 
 DEPENDENT = 1e-9  # of the largest singular value of the scaled design
 ITERATIONS = 12
+HELD = 1e3  # weight of constants that are held at zero, relative to that of a torque
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,13 @@ class WeightedFit:
 
 
 def weighted_fit(
-    q: Array, tau: Array, frequencies: Frequencies, start: Array, noise: MeasurementNoise
+    q: Array,
+    tau: Array,
+    frequencies: Frequencies,
+    start: Array,
+    noise: MeasurementNoise,
+    *,
+    constants: bool = True,
 ) -> WeightedFit:
     """Fit coefficients to samples whose angles and torques both have errors.
 
@@ -126,10 +133,13 @@ def weighted_fit(
         Constants and coefficients to start from.
     noise : MeasurementNoise
         Noise levels, up to a common factor.
+    constants : bool
+        Whether joints may have constant torques; otherwise these are held at zero.
     """
     count, n = q.shape
     estimate, true_q = start, q
     unit = np.eye(n)
+    held = np.zeros((0 if constants else n, len(start)))
     for _ in range(ITERATIONS):
         stiffness = stiffness_matrices(frequencies, estimate[n:], true_q)
         transposed = np.swapaxes(stiffness, 1, 2)
@@ -141,7 +151,12 @@ def weighted_fit(
         )
         design = (whitening @ columns).reshape(count * n, -1)
         white = (whitening @ target[:, :, None]).ravel()
-        previous, estimate = estimate, solve(design, white, n)
+        if len(held):  # as if constants had been measured: zero, far better than any torque
+            held[:, :n] = HELD * np.abs(whitening).max() * unit
+        previous = estimate
+        estimate = solve(
+            np.concatenate([design, held]), np.concatenate([white, np.zeros(len(held))]), n
+        )
         residual = white - design @ estimate
         squares = float(residual @ residual)
         spread = float(np.sqrt(squares / max(1, white.size - design.shape[1])))
@@ -151,7 +166,7 @@ def weighted_fit(
         true_q = q - np.clip(error, -limit, limit)
         if np.abs(estimate - previous).max() <= 1e-10 * np.abs(estimate).max():
             break
-    root: Array = np.asarray(np.linalg.qr(design, mode="r"))
+    root: Array = np.asarray(np.linalg.qr(np.concatenate([design, held]), mode="r"))
     diagonals = np.diagonal(whitening, axis1=1, axis2=2)
     log_volume = 2.0 * float(np.log(np.abs(np.diag(root))).sum() - np.log(diagonals).sum())
     return WeightedFit(estimate, root, squares, log_volume, true_q, whitening, design, residual)

@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 Frequencies = NDArray[np.int64]
 
 ROUNDING = 1e-9  # of the largest torque: residuals below it are where a motion ended, not noise
+EXACT = 1e-7  # of the largest torque: samples that a potential alone explains so well have no
+# constant torques above it, though they are too few to fit any
 NOISE_RATIOS = (0.01, 0.1, 1.0, 10.0)  # torque noise over angle noise times stiffness
 
 
@@ -192,7 +194,9 @@ def fit_potential(
     -----
     Every sample gives n equations for the 2 m coefficients (theory.md, section 5) and a constant
     torque for each joint: a cable that pulls, friction that always points one way, an amplifier's
-    zero; left out, it would bend the coefficients and pass for noise. An error of the
+    zero; left out, it would bend the coefficients and pass for noise. Samples too few for constants
+    are enough where a potential alone explains them exactly, one equation more than coefficients:
+    a constant would show. An error of the
     angles acts on the torque through the stiffness H, so residuals are weighted by the inverse of
     ``sigma_torque^2 I + sigma_angle^2 H H^T``, and the angles themselves are corrected by their
     most probable error before the next step (Gauss-Newton for the errors-in-variables problem
@@ -221,15 +225,20 @@ def fit_potential(
     unknowns = 2 * len(frequencies) + equations
     freedom = len(q) * equations - unknowns
     least = -(-(unknowns + 1) // max(1, equations))
-    if len(q) < least:
+    offered, frequencies = frequencies, frequencies[:, touched]
+    q, tau = q[:, touched], tau[:, touched]
+    largest = max(float(np.abs(tau).max(initial=0.0)), 1e-300)
+    few = len(q) < least
+    if few and not (noise is None and _needs_no_constants(q, tau, frequencies, largest)):
         raise Undetermined(
             f"{least - len(q)} more samples: {len(q)} different ones were given, {least} determine "
             f"{unknowns - equations} coefficients and {equations} constants and check them"
         )
-    offered, frequencies = frequencies, frequencies[:, touched]
-    q, tau = q[:, touched], tau[:, touched]
-    largest = max(float(np.abs(tau).max()), 1e-300)
-    start = _start(q, tau, frequencies)
+    if few:
+        freedom += equations
+        start = np.concatenate([np.zeros(equations), _start(q, tau, frequencies, constants=False)])
+    else:
+        start = _start(q, tau, frequencies)
     if noise is not None:
         floor = MeasurementNoise(noise.angle, float(np.hypot(noise.torque, ROUNDING * largest)))
         found = weighted_fit(q, tau, frequencies, start, floor)
@@ -239,7 +248,7 @@ def fit_potential(
     best: tuple[float, WeightedFit, float, float] | None = None
     for ratio in NOISE_RATIOS:
         shape = MeasurementNoise(1.0 / typical, ratio)
-        found = weighted_fit(q, tau, frequencies, start, shape)
+        found = weighted_fit(q, tau, frequencies, start, shape, constants=not few)
         variance = max(found.squares / freedom, (ROUNDING * largest / ratio) ** 2)
         deviance = freedom * np.log(variance) + found.log_volume
         if best is None or deviance < best[0]:
@@ -250,11 +259,22 @@ def fit_potential(
     return _fitted(offered, touched, found, size, float(freedom), level, largest)
 
 
-def _start(q: Array, tau: Array, frequencies: Frequencies) -> Array:
-    """Constants and coefficients by ordinary least squares."""
+def _needs_no_constants(q: Array, tau: Array, frequencies: Frequencies, largest: float) -> bool:
+    """Whether a potential alone explains more equations than it has coefficients, exactly."""
+    if tau.size <= 2 * len(frequencies):
+        return False
+    coefficients = _start(q, tau, frequencies, constants=False)
+    left = tau - torque_features(frequencies, q) @ coefficients
+    return float(np.abs(left).max()) <= EXACT * largest
+
+
+def _start(q: Array, tau: Array, frequencies: Frequencies, *, constants: bool = True) -> Array:
+    """Constants, unless there are none, and coefficients by ordinary least squares."""
     count, n = q.shape
-    constants = np.broadcast_to(np.eye(n), (count, n, n))
-    columns = np.concatenate([constants, torque_features(frequencies, q)], axis=2)
+    columns = torque_features(frequencies, q)
+    if constants:
+        unit = np.broadcast_to(np.eye(n), (count, n, n))
+        columns = np.concatenate([unit, columns], axis=2)
     return solve(columns.reshape(count * n, -1), tau.ravel(), n)
 
 

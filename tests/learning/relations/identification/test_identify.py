@@ -217,3 +217,21 @@ def test_joints_that_no_static_torque_drives_do_not_keep_relations_from_being_de
     assert found.unmoved == (0, 4, 5)
     assert found.missing is not None
     assert "joint 1, 5, 6 moves" in found.missing
+
+
+@pytest.mark.parametrize(("name", "count"), [("pendulum", 3), ("2r", 5), ("3r", 9)])
+def test_exact_samples_suffice_that_determine_a_potential_and_check_it(name, count):
+    """Constants cost no sample where there are none: more equations than coefficients are met."""
+    potential, group = known_potential(name)
+    unit = np.eye(potential.n)
+    for seed in range(5):
+        q = np.random.default_rng(seed).uniform(-2.0, 2.0, (count, potential.n))
+        tau = potential.gradient(q)
+        assert identify(q, tau).order == group.order
+        assert identify(q[1:], tau[1:]).order == 1
+        # and what is more than gravity shows: constants, springs, noise
+        noise = 1e-4 * np.random.default_rng(seed).normal(size=q.shape)
+        for more in (0.01 * unit[-1], 0.01 * q, noise):
+            found = identify(q, tau + more)
+            assert found.order == 1
+            assert "and check them" in found.missing
