@@ -76,6 +76,8 @@ def derive(
     elif latex:
         print(gravity_latex(gravity))
     elif sympy:
+        for warning in gravity.warnings:
+            print(f"# warning: {warning}")
         print(gravity_sympy(gravity))
     else:
         print(gravity_text(gravity))

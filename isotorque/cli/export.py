@@ -81,7 +81,11 @@ def export(
         from isotorque.learning.export.array_files import export_bytes
 
         arrays, document = export_bytes(
-            exported.form, exported.robot, exported.digest, exported.joints
+            exported.form,
+            exported.robot,
+            exported.digest,
+            exported.joints,
+            exported.about.get("warnings", ()),
         )
         write_whole(npz, arrays)
         write_whole(described, document)

@@ -32,7 +32,7 @@ from isotorque.runs.stages import DATABASE, random_generator, run_info, simulate
 from isotorque.single_thread import single_thread
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
-from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup, check_listable
 from isotorque.symbolic.robots.load_robot import Robot, load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
@@ -118,6 +118,7 @@ def prepare_run(options: RunOptions) -> RunOutcome:
     with timed(clock, "derivation"):
         gravity = GravityModel(robot)
         group = primary_symmetries(gravity.potential)
+    check_listable(group, options.robot.spec, robot.joint_names)
     arm = simulated_arm(robot, made_with, 0)
     scheme = Scheme(
         arm,

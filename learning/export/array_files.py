@@ -49,7 +49,11 @@ class ExportedArrays:
 
 
 def export_bytes(
-    form: TorqueForm, robot: str, digest: str, joint_names: Sequence[str]
+    form: TorqueForm,
+    robot: str,
+    digest: str,
+    joint_names: Sequence[str],
+    warnings: Sequence[str] = (),
 ) -> tuple[bytes, str]:
     """An export as the contents of its two files.
 
@@ -58,7 +62,8 @@ def export_bytes(
     npz : bytes
         The tables.
     document : str
-        JSON: schema version, robot and its hash, joints, units, kind, formula, shapes.
+        JSON: schema version, robot and its hash, joints, units, kind, formula, shapes, and what
+        is doubtful about the robot (``warnings``), if anything is.
     """
     arrays: dict[str, Any] = form.to_arrays()
     file = io.BytesIO()
@@ -73,7 +78,7 @@ def export_bytes(
         "kind": form.KIND,
         "formula": form.FORMULA,
         "arrays": {name: list(array.shape) for name, array in arrays.items()},
-    }
+    } | ({"warnings": list(warnings)} if warnings else {})
     return file.getvalue(), json.dumps(document, indent=1) + "\n"
 
 

@@ -77,6 +77,7 @@ def gravity_c(model: GravityModel, program: GravityProgram | None = None) -> str
 
 def _header(model: GravityModel) -> str:
     text = [f"Gravity torque of {model.name}, written by Isotorque.", ""]
+    text += [f"Warning: {warning}" for warning in model.warnings] + [""] * bool(model.warnings)
     text += ["q: joint angles [rad]; tau: torques that hold the arm at rest [N m]; in this order:"]
     text += [f"  {i} {name}" for i, name in enumerate(model.joint_names)]
     text += ["", "Compile with `cc -O2 -c`, link with -lm."]

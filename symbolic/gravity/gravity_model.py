@@ -68,6 +68,8 @@ class GravityModel:
         Largest difference found between the torque derived here, in both forms, and Pinocchio's of
         the robot as it was read, before angles were snapped [N m]; None where there is no robot
         to ask.
+    warnings : tuple of str
+        What is doubtful about the robot's masses: written into everything that is made of it.
 
     Raises
     ------
@@ -103,6 +105,7 @@ class GravityModel:
     def __init__(self, source: Robot | KinematicTree) -> None:
         self.tree: KinematicTree = source.tree if isinstance(source, Robot) else source
         self.name: str = source.name if isinstance(source, Robot) else "kinematic tree"
+        self.warnings: tuple[str, ...] = source.warnings if isinstance(source, Robot) else ()
         self.potential: TrigonometricPolynomial = derive_potential(self.tree)
         self._reference = _PinocchioTorques.of(source) if isinstance(source, Robot) else None
         self._potential_error = self._check(self.potential.gradient)

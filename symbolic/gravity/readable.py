@@ -25,8 +25,9 @@ def gravity_text(model: GravityModel) -> str:
     Returns
     -------
     str
-        Lines ``U = ...`` [J] and ``g_i = ...`` [N m] in angles q1, q2, .. [rad], before them the
-        joint that each angle belongs to, where its name is another.
+        Lines ``U = ...`` [J] and ``g_i = ...`` [N m] in angles q1, q2, .. [rad], before them
+        what is doubtful about the robot's masses, and the joint that each angle belongs to, where
+        its name is another.
 
     Examples
     --------
@@ -37,7 +38,8 @@ def gravity_text(model: GravityModel) -> str:
     g_2 = c2*g*m2*cos(q1 + q2)
     """
     names = [f"q{i + 1}" for i in range(model.n)]
-    lines = [
+    lines = [f"warning: {warning}" for warning in model.warnings]
+    lines += [
         f"{q} = {joint}" for q, joint in zip(names, model.joint_names, strict=True) if q != joint
     ]
     rows = {"U": model.significant_potential}
@@ -61,7 +63,8 @@ def gravity_latex(model: GravityModel, symbols: Sequence[str] | None = None) -> 
     Returns
     -------
     str
-        One row ``g_{i} &= ...`` per joint, coefficients in N m with six digits.
+        One row ``g_{i} &= ...`` per joint, coefficients in N m with six digits; before it comments
+        with what is doubtful about the robot's masses.
 
     Examples
     --------
@@ -75,7 +78,8 @@ def gravity_latex(model: GravityModel, symbols: Sequence[str] | None = None) -> 
     rows = [
         f"g_{{{i + 1}}} &= {_polynomial_latex(f, names)}" for i, f in enumerate(model.components)
     ]
-    return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
+    said = "".join(f"% warning: {warning}\n" for warning in model.warnings)
+    return said + "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
 
 
 def latex_name(name: str) -> str:

@@ -287,6 +287,37 @@ class SymmetryGroup(Sequence[SymmetryRelation]):
         return SymmetryGroup(r for r in self.listed() if np.all(r.Y == 1))
 
 
+def check_listable(group: SymmetryGroup, where: str, joint_names: Sequence[str]) -> None:
+    """Refuse a group too large to be listed, before any work that needs every relation.
+
+    Raises
+    ------
+    InputError
+        Naming joints that would be few enough, by the option that chooses them.
+
+    Examples
+    --------
+    >>> from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
+    >>> from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+    >>> U = TrigonometricPolynomial(np.eye(7, dtype=int), [0.0] * 7, [1.0] * 7)
+    >>> check_listable(primary_symmetries(U), "seven", "abcdefg")
+    Traceback (most recent call last):
+    isotorque.InputError: seven: number of symmetries is 16384; accepted: at most 4096, as with some
+        of the joints: --joints a,b,c,d,e,f
+    """
+    if group.order <= LARGEST_LIST:
+        return
+    chosen: list[int] = []
+    order = 1
+    for factor in group.direct_factors:
+        if order * factor.order <= LARGEST_LIST and factor.joints:
+            order *= factor.order
+            chosen += factor.joints
+    names = ",".join(joint_names[j] for j in sorted(chosen))
+    few = f", as with some of the joints: --joints {names}" if chosen else " (--lock some joints)"
+    raise InputError(where, "number of symmetries", group.order, f"at most {LARGEST_LIST}{few}")
+
+
 def group_structure(group: SymmetryGroup) -> str:
     """Return in words how a group is a direct product of those of blocks of joints.
 

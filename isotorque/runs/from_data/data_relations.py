@@ -19,7 +19,7 @@ from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.relations.testing.supported_group import SupportedGroup, supported_group
 from isotorque.learning.statistics.poses import group_poses
 from isotorque.symbolic.gravity.gravity_model import GravityModel
-from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup, check_listable
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 Flags = NDArray[np.bool_]
@@ -84,6 +84,7 @@ class RelationsOfData:
         report("relations")
         if which == "exact":
             group = primary_symmetries(gravity.potential)
+            check_listable(group, gravity.name, gravity.joint_names)
         elif which == "learned":
             group, remarks = self._learned(left_out)
             if group is None:

@@ -145,3 +145,29 @@ def test_refusals(model, options, message, export, tmp_path, monkeypatch):
     error = export(model, *options, expect=2)
     assert message in error
     assert len(error.splitlines()) == 1
+
+
+MASSLESS = """<robot name="m"><link name="base"/><link name="arm"/>
+<joint name="j" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
+
+
+def test_everything_made_of_a_robot_without_masses_says_so(tmp_path, capsys):
+    arm, said = tmp_path / "m.urdf", "no joint feels gravity: no mass in 'arm' (--allow-massless)"
+    arm.write_text(MASSLESS)
+    c, npz = tmp_path / "m.c", tmp_path / "m.npz"
+    for words in (
+        ["derive"],
+        ["derive", "--latex"],
+        ["derive", "--sympy"],
+        ["derive", "--json"],
+        ["symmetries", "--json"],
+        ["export", "--c", c, "--npz", npz, "--json"],
+    ):
+        command = [words[0], arm, "--allow-massless", "--quiet", *words[1:]]
+        assert status([str(word) for word in command]) == 0
+        assert said in capsys.readouterr().out, words
+    assert said in c.read_text()
+    assert said in npz.with_suffix(".json").read_text()
+    assert status(["derive", str(arm), "--allow-massless", "--quiet", "--c", str(c)]) == 0
+    assert said in c.read_text()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
+from isotorque.learning.files.csv_samples import StaticSamples, write_csv
 from isotorque.runs.experiment import run_experiment
 from isotorque.runs.options.run_options import ArmOptions, RunOptions
 from isotorque.symbolic.common.errors import InputError
@@ -152,3 +153,36 @@ def test_arms_of_any_size_pass(factor, tmp_path, capsys):
     document = json.loads(capsys.readouterr().out)
     assert document["symmetry"]["found"] == 8
     assert document["totals"]["rmse_torque"] < 1e-4 * 24.5 * factor
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["run"],
+        ["learn"],
+        ["learn", "--strategy", "lattice"],
+        ["learn", "--data", "arm.csv", "--symmetries", "exact"],
+    ],
+)
+def test_more_symmetries_than_can_be_listed_are_refused_at_once(
+    command, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    text = '<robot name="hand"><link name="palm"/>'
+    for i in range(7):
+        text += f"""<link name="f{i}"><inertial><origin xyz="0.1 0 0"/><mass value="1"/><inertia
+            ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+            <joint name="j{i}" type="revolute"><parent link="palm"/><child link="f{i}"/>
+            <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="9" velocity="9"/></joint>"""
+    (tmp_path / "hand.urdf").write_text(text + "</robot>")
+    names = [f"j{i}" for i in range(7)]
+    q = np.random.default_rng(0).uniform(-3, 3, (20, 7))
+    write_csv("arm.csv", StaticSamples(q, np.sin(q)), names)
+    assert status([command[0], "hand.urdf", *command[1:], "--out", "out", "--quiet"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "number of symmetries is 16384; accepted: at most 4096" in said
+    advised = said.split("--joints ")[1].strip()
+    assert advised == ",".join(names[:6])
+    assert status(["symmetries", "hand.urdf", "--joints", advised, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["order"] == 4096
