@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from isotorque.learning.files.saved_models import SavedModel as SavedModel
     from isotorque.learning.files.saved_models import load_model as load_model
     from isotorque.learning.files.saved_models import save_model as save_model
-    from isotorque.learning.learners.cross_validation import held_out as held_out
+    from isotorque.learning.learners.cross_validation import cross_validate as cross_validate
     from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
         SymmetricGaussianProcess as SymmetricGaussianProcess,
     )
@@ -146,7 +146,7 @@ _HOME = {
     "casadi_function": "learning.export.casadi_export",
     "d_optimal": "learning.sampling.optimal_design",
     "discover": "learning.discovery.torque_profile_discovery",
-    "held_out": "learning.learners.cross_validation",
+    "cross_validate": "learning.learners.cross_validation",
     "identify": "learning.relations.identification.identify",
     "judge_candidates": "learning.relations.testing.judge_candidates",
     "judge_static_torques": "verify.static_torques.judge_static_torques",

@@ -68,8 +68,8 @@ class SchemeSettings:
         Torques at the end of the discovery, each chosen to say most about the relations.
     guided : bool
         Whether the arm can be placed and held from outside: its home torque is then measured, and
-        an arm that would not stay there by itself is led through its whole range, with
-        ``arm.reach`` the limits (n, 2) [rad] it is led within.
+        an arm that would not stay there by itself is guided through its whole range, with
+        ``arm.reach`` the limits (n, 2) [rad] it is guided within.
     from_trajectories : bool
         Whether the static torques of configurations passed by are admitted too, once the
         relations are known (`visited_torques`).
@@ -293,7 +293,7 @@ class Scheme:
         arm: Any = self.arm
         settings = self.settings.discovery
         for batch in range(1 + self.settings.max_targets):
-            count = settings.led if batch else settings.babbling
+            count = settings.guided_places if batch else settings.babbling
             for outcome in lead(arm, arm.reach, self.rng, count):
                 self._take(outcome)
                 yield Discovery(None, outcome, None, True)

@@ -31,7 +31,7 @@ def literal_rows(options: argparse.Namespace) -> Iterator[Row]:
 
 
 def mode_rows(options: argparse.Namespace) -> Iterator[Row]:
-    """The same with friction that holds the arm, and with an arm led from outside."""
+    """The same with friction that holds the arm, and with a guided arm."""
     truth = Truth.of("2r")
     plan = Plan(54_000, 18_000, SETS)
     geared = all_seeds(

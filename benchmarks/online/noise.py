@@ -13,9 +13,9 @@ from benchmarks.online.learners import QUICK, joint_for_noise
 from benchmarks.online.runs import Plan, Run, scheme_run
 from benchmarks.online.table import Row, spread
 from benchmarks.online.truth import Truth
-from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.settings import SensorNoise
 
-NOISE = MeasurementNoise(angle=np.deg2rad(0.1), torque=0.01)
+NOISE = SensorNoise(angle=np.deg2rad(0.1), torque=0.01)
 SAMPLES = (60, 120, 250, 500, 1000, 2000)
 
 
@@ -71,7 +71,7 @@ def _noisy_run(truth: Truth, plan: Plan, seed: int) -> tuple[Run, np.ndarray]:
     return run, np.array(recorders[-1].kept)
 
 
-def cramer_rao(truth: Truth, q: np.ndarray, noise: MeasurementNoise) -> float:
+def cramer_rao(truth: Truth, q: np.ndarray, noise: SensorNoise) -> float:
     """Least RMSE on the dense set of an unbiased estimate of the 2R arm's two parameters.
 
     Parameters
@@ -80,7 +80,7 @@ def cramer_rao(truth: Truth, q: np.ndarray, noise: MeasurementNoise) -> float:
         The 2R arm.
     q : (m, 2) array
         Configurations at which torque and angles were measured once [rad].
-    noise : MeasurementNoise
+    noise : SensorNoise
         Standard deviations of the measurements.
 
     Returns

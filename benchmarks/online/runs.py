@@ -14,7 +14,7 @@ from isotorque.learning.exploration.exploration import Counts, Exploration
 from isotorque.learning.exploration.settings import ExplorationSettings
 from isotorque.learning.exploration.strategies import GuidedDirectionSampling
 from isotorque.learning.scheme import Scheme, SchemeSettings
-from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 
@@ -84,7 +84,7 @@ def scheme_run(
     plan: Plan,
     seed: int,
     *,
-    noise: MeasurementNoise | None = None,
+    noise: SensorNoise | None = None,
     physics: str = "open_loop",
     bold: bool = False,
 ) -> Run:

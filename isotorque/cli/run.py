@@ -54,7 +54,7 @@ def run(
     Passed is a run whose relations are none of them false, whose gate before learning is passed,
     and whose model is right within --tolerance on the whole space; where orbits without a stable
     member exist, those with one are judged too, on their own. An arm that cannot hold itself is
-    led. The same command resumes a run that was stopped.
+    guided. The same command resumes a run that was stopped.
     """
     from isotorque.cli.progress import progress_bars
     from isotorque.runs.experiment import save_run_model
@@ -81,8 +81,8 @@ def run(
         tolerance=tolerance,
     )
     load(robot, quiet)
-    if options.led_by_need:
-        words = "cannot hold itself within its limits: it is led and held (guided)"
+    if options.guided_by_need:
+        words = "cannot hold itself within its limits: it is guided (placed and held)"
         say(f"{robot.spec} {words}", quiet)
     output_directory(out)
     with progress_bars(quiet) as progress:

@@ -49,7 +49,7 @@ def simulate(
     import numpy as np
 
     from isotorque.learning.discovery.torque_limits import check_torque
-    from isotorque.learning.simulator.settings import MeasurementNoise
+    from isotorque.learning.simulator.settings import SensorNoise
     from isotorque.learning.simulator.simulated_arm import SimulatedArm
 
     loaded = load(robot, quiet)
@@ -61,7 +61,7 @@ def simulate(
         physics=physics,
         engine=engine,
         settle=settle,
-        noise=MeasurementNoise(angle_noise, torque_noise, encoder_step),
+        noise=SensorNoise(angle_noise, torque_noise, encoder_step),
         rng=np.random.default_rng(seed),
         q0=q0,
     )

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from isotorque.learning.arm import OutcomeKind
 from isotorque.learning.discovery.torque_limits import TorqueLimitedArm
 from isotorque.learning.exploration.exploration import ExplorationStep
-from isotorque.learning.exploration.guided_arm import LedArm
-from isotorque.learning.exploration.registry import DIRECTIONS, LED
+from isotorque.learning.exploration.guided_arm import LimitedGuidedArm
+from isotorque.learning.exploration.registry import DIRECTIONS, GUIDED_DIRECTIONS
 from isotorque.learning.files.saved_models import SavedModel, save_model
 from isotorque.learning.learners.memory.collected_samples import CollectedSamples
 from isotorque.learning.learners.registry import BATCH_LEARNERS, learner_by_name, online_learner
@@ -168,7 +168,7 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
         recorded = RecordedSimulation(arm, recording, phase="discovery")
         limited = TorqueLimitedArm(recorded, result.robot.effort)
         is_guided = made_with.physics == PhysicsMode.GUIDED
-        scheme.arm = LedArm(limited, result.robot.limits) if is_guided else limited
+        scheme.arm = LimitedGuidedArm(limited, result.robot.limits) if is_guided else limited
         for motion in scheme.discover():
             result.motions.append(motion)
             progress(DISCOVERING, len(result.motions), 0, _gate_note(scheme))
@@ -204,8 +204,8 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
         raise InputError(result.robot.name, what, 0, accepted)
     if result.stops_before_learning:
         return
-    if result.scheme.home_torque is None and not options.is_led:
-        accepted = f"{DIRECTIONS} or {LATTICE}: the arm cannot hold itself and has to be led"
+    if result.scheme.home_torque is None and not options.is_guided:
+        accepted = f"{DIRECTIONS} or {LATTICE}: the arm cannot hold itself and has to be guided"
         raise InputError(result.robot.name, "strategy", options.strategy, accepted)
     arm = simulated_arm(result.robot, options.arm, 1)
     chosen: dict[str, Any] = {k: getattr(options, k) for k in ("samples", "symmetries", "strategy")}
@@ -220,7 +220,9 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     ):
         recorded = RecordedSimulation(arm, recording, phase="learning")
         limited = TorqueLimitedArm(recorded, result.robot.effort)
-        moved: Any = LedArm(limited, result.robot.limits) if options.is_led else limited
+        moved: Any = (
+            LimitedGuidedArm(limited, result.robot.limits) if options.is_guided else limited
+        )
         result.scheme.arm = moved
         result.scheme.rng = random_generator(options.arm, 1)
         _follow(result, progress)
@@ -228,7 +230,7 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     result.remarks += _torques_cut(limited, "learning")
     learner = result.scheme.learner
     if isinstance(learner, CollectedSamples):
-        result.scheme.learner = learner.fitted()
+        result.scheme.learner = learner.fitted_learner()
 
 
 def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:
@@ -258,7 +260,7 @@ def save_learner(learner: Any, robot: Robot, notes: dict[str, Any], out: Path) -
 
 def _scheme_settings(options: RunOptions) -> SchemeSettings:
     strategy = DIRECTIONS if options.strategy == LATTICE else options.strategy
-    strategy = LED if options.is_led else strategy
+    strategy = GUIDED_DIRECTIONS if options.is_guided else strategy
     return SchemeSettings(
         n_min=options.n_min,
         samples=options.samples,
@@ -292,7 +294,7 @@ def _follow(result: RunOutcome, progress: Progress) -> None:
         count, note = len(result.steps), ""
         if count in counts:
             learner: Any = result.scheme.learner
-            model = learner.fitted() if hasattr(learner, "fitted") else learner
+            model = learner.fitted_learner() if hasattr(learner, "fitted_learner") else learner
             point = test.point(count, model, step.explored)
             result.curve.append(point)
             note = f"RMSE {point.rmse:.4g} N m, largest error {point.largest:.4g} N m"

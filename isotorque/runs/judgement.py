@@ -101,14 +101,16 @@ def judge_run(run: RunOutcome) -> RunReport:
         model=_model(run),
         level_sets=_level_sets(run),
         verdicts=verdicts,
-        remarks=_led(run) + run.remarks + run.robot.warnings,
+        remarks=_guided(run) + run.remarks + run.robot.warnings,
     )
 
 
-def _led(run: RunOutcome) -> tuple[str, ...]:
-    if not run.options.led_by_need:
+def _guided(run: RunOutcome) -> tuple[str, ...]:
+    if not run.options.guided_by_need:
         return ()
-    return (f"{run.robot.name} cannot hold itself within its limits: it was led and held (guided)",)
+    return (
+        f"{run.robot.name} cannot hold itself within its limits: it was guided (placed and held)",
+    )
 
 
 def _setup(run: RunOutcome) -> RunSetup:
@@ -148,7 +150,7 @@ def _setup(run: RunOutcome) -> RunSetup:
         joint_names=run.robot.joint_names,
         physics=options.arm.physics,
         engine=options.arm.engine,
-        strategy=options.strategy.replace("-", " ") + " (the arm led)" * options.is_led,
+        strategy=options.strategy.replace("-", " ") + " (the arm guided)" * options.is_guided,
         learner=options.learner,
         symmetries=options.symmetries,
         seed=options.arm.seed,
@@ -236,10 +238,11 @@ def _model(run: RunOutcome) -> ModelJudgement | None:
     if run.scheme.learner is None:
         return None
     targets = [*paper_targets(run.robot)]
-    if run.scheme.domain is not None:
+    domain = run.scheme.domain
+    if domain is not None:
         # most targets are unstable; their symmetric copies where the arm explored need not be
         targets += [
-            TargetSet(f"{t.name}, copies in the BCTS explored", run.scheme.domain.fold(t.q).q)
+            TargetSet(f"{t.name}, copies in the BCTS explored", domain.representatives(t.q).q)
             for t in targets
         ]
     # most learners only come near equivariance: that is measured, but nobody claims it

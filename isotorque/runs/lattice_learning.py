@@ -57,7 +57,7 @@ def run_lattice(options: RunOptions, out: Path, progress: Progress) -> RunOutcom
     ----------
     options
         What to run; symmetries that are to be learned are discovered first, unless the arm has to
-        be led: then the lattice alone shows them.
+        be guided: then the lattice alone shows them.
     out
         Directory; every sample is committed to ``run.sqlite`` before the next motion begins. What
         is recorded there is not measured again.
@@ -74,7 +74,7 @@ def run_lattice(options: RunOptions, out: Path, progress: Progress) -> RunOutcom
     InputError
         For a robot or options that cannot be used, and for a directory that holds another run.
     """
-    discovers = options.symmetries == "learned" and not options.led_by_need
+    discovers = options.symmetries == "learned" and not options.guided_by_need
     run = discover_symmetries(options, out, progress) if discovers else prepare_run(options)
     run.seconds.setdefault("discovery", 0.0)
     with timed(run.seconds, "learning"):
@@ -135,7 +135,7 @@ def _step(number: int, q: Array, torque: Array) -> ExplorationStep:
 def _with_more_samples(run: RunOutcome, q: Array, torque: Array) -> tuple[str, ...]:
     """Take over the relations that the lattice shows beside what the discovery showed; say so.
 
-    A lattice was led to places that the arm cannot hold by itself, so it may know better.
+    A lattice was guided to places that the arm cannot hold by itself, so it may know better.
     """
     group = run.scheme.group
     known = 1 if group is None else group.order

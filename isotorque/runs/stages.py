@@ -11,7 +11,7 @@ import numpy as np
 from isotorque.learning.discovery.home_torque import holds_itself
 from isotorque.learning.files.run_info import RunInfo
 from isotorque.learning.recordings.recording_reader import RecordingReader
-from isotorque.learning.simulator.settings import MeasurementNoise, PhysicsMode
+from isotorque.learning.simulator.settings import PhysicsMode, SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.runs.options.run_options import ArmOptions
 from isotorque.symbolic.common.robot_options import RobotOptions
@@ -33,7 +33,7 @@ def simulated_arm(robot: Robot, options: ArmOptions, stage: int) -> SimulatedArm
     """Return the arm of a stage; its sensors have a generator of their own."""
     # who holds a guided arm measures torques of the same standard deviation
     held = np.sqrt(3.0) * options.torque_noise * (options.physics == PhysicsMode.GUIDED)
-    noise = MeasurementNoise(
+    noise = SensorNoise(
         options.angle_noise, options.torque_noise, options.encoder_step, float(held)
     )
     return SimulatedArm(
@@ -47,7 +47,7 @@ def simulated_arm(robot: Robot, options: ArmOptions, stage: int) -> SimulatedArm
 
 
 def cannot_hold_itself(robot: Robot, options: ArmOptions) -> bool:
-    """Say whether an arm has to be led: no torque keeps it where it is put."""
+    """Say whether an arm has to be guided: no torque keeps it where it is put."""
     guided = replace(options, physics=PhysicsMode.GUIDED.value)
     return not holds_itself(simulated_arm(robot, guided, TRIAL), random_generator(options, TRIAL))
 

@@ -142,7 +142,7 @@ def measure_home_torque(arm: Any, rng: np.random.Generator) -> Search:
     -------
     (n,) array or None
         None where the arm falls from home under the torque that was measured there, or under one
-        that is off by 1 %: it has to be led.
+        that is off by 1 %: it has to be guided.
     """
     _at_home(arm)
     outcome = arm.apply(np.zeros(len(arm.q)))

@@ -32,9 +32,9 @@ class DiscoverySettings:
         A torque is left early when this many profiles in a row bring nothing new.
     babbling : int
         Torques tried at first to learn which the arm can hold (the SST); places at first, where it
-        holds none and is led.
-    led : int
-        Places that a led arm is taken to between two looks at the relations.
+        holds none and is guided.
+    guided_places : int
+        Places that a guided arm is taken to between two looks at the relations.
     away_from_zero : float
         Every target component is at least this share of the joint's torque scale: signs of
         smaller ones would say nothing.
@@ -47,13 +47,13 @@ class DiscoverySettings:
     profiles_per_torque: int = 16
     patience: int = 8
     babbling: int = 120
-    led: int = 60
+    guided_places: int = 60
     away_from_zero: float = 0.05
     same_angle: float = 1e-3
     profile: ProfileShape = field(default_factory=ProfileShape)
 
     def __post_init__(self) -> None:
-        for name in ("profiles_per_torque", "patience", "babbling", "led"):
+        for name in ("profiles_per_torque", "patience", "babbling", "guided_places"):
             if getattr(self, name) < 1:
                 raise InputError("discovery", name, getattr(self, name), "at least 1")
         if not 0 < self.away_from_zero < 1:
@@ -91,7 +91,7 @@ def lead(
     arm
         An arm that can be placed and held from outside.
     limits : (n, 2) array
-        Between which angles it is led [rad], finite.
+        Between which angles it is guided within, finite.
     rng
         Source of randomness.
     count

@@ -42,7 +42,7 @@ def central_domain(group: SymmetryGroup, settled: Array, seen: Array) -> Fundame
     default = FundamentalDomain(group)
     if not len(settled):
         return FundamentalDomain.near(group, np.mean(seen, axis=0))
-    held = np.bincount(default.fold(settled).relation.ravel(), minlength=group.order)
+    held = np.bincount(default.representatives(settled).relation.ravel(), minlength=group.order)
     low, high = np.min(seen, axis=0), np.max(seen, axis=0)
     best, best_margin = default.center, -np.inf
     for count, relation in zip(held, group, strict=True):

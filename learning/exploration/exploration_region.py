@@ -1,4 +1,4 @@
-"""A convex cell to explore: quick membership, and the nearest point of the cell."""
+"""Convex region to explore: quick membership, and the nearest point of the region."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Polytope(Protocol):
         ...
 
 
-class ExplorationCell:
+class ExplorationRegion:
     """A fundamental domain as exploration uses it.
 
     Parameters
@@ -59,10 +59,10 @@ class ExplorationCell:
     ...     basis=np.eye(2), A_sat=np.eye(2)[None], d_sat=np.zeros((1, 2)), Y=np.ones((1, 2))
     ... )
     >>> square = np.array([[1.0, 0, 1], [-1, 0, 1], [0, 1, 1], [0, -1, 1]])
-    >>> cell = ExplorationCell(
+    >>> region = ExplorationRegion(
     ...     SimpleNamespace(halfspaces=square, group=group, center=np.zeros(2))
     ... )
-    >>> cell.contains(np.array([0.5, 2 * np.pi])), cell.nearest(np.array([3.0, 0.5])).tolist()
+    >>> region.contains(np.array([0.5, 2 * np.pi])), region.nearest(np.array([3.0, 0.5])).tolist()
     (True, [1.0, 0.5])
     """
 
@@ -86,11 +86,11 @@ class ExplorationCell:
         self._turns = 2 * np.pi * turns[order] @ self._isometry.T
 
     def contains(self, q: Array) -> bool:
-        """Whether q (n,) [rad] lies in the cell, up to full turns."""
+        """Whether q (n,) [rad] lies in the region, up to full turns."""
         return bool(self._excess(self._point(q)).max(axis=1).min() <= TOLERANCE)
 
     def nearest(self, q: Array) -> Array:
-        """The configuration (n,) [rad] of the cell nearest to q in the group's distance."""
+        """The configuration (n,) [rad] of the region nearest to q in the group's distance."""
         z = self._point(q)
         worst = self._excess(z).max(axis=1)
         turn = self._turns[int(np.argmin(worst))]
@@ -100,7 +100,7 @@ class ExplorationCell:
         return np.asarray(q + self._lift @ (self._back @ moved))
 
     def _point(self, q: Array) -> Array:
-        """Isometric coordinates of q in the turn of the cell's centre."""
+        """Isometric coordinates of q in the turn of the region's centre."""
         y = self._basis @ q
         y = y - 2 * np.pi * np.round((y - self._center) / (2 * np.pi))
         return np.asarray(self._isometry @ y)

@@ -1,4 +1,4 @@
-"""A guided arm that is led no farther than its joint limits."""
+"""Joint limits of a guided arm."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from isotorque.symbolic.common.joint_limits import one_turn
 Array = NDArray[np.float64]
 
 
-class LedArm:
-    """Stands in for a guided arm: a place beyond a limit becomes the nearest one before it.
+class LimitedGuidedArm:
+    """Guided arm that stays within its joint limits: it is placed at the nearest place before them.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class LedArm:
 
     Notes
     -----
-    As with a person who leads the arm: joints stop where they can go no farther, and what is
+    As with a person who guides the arm: joints stop where they can go no farther, and what is
     measured is what holds the arm there. Angles are first turned by full turns to where their
     limits are.
 
@@ -32,7 +32,7 @@ class LedArm:
     --------
     >>> from types import SimpleNamespace
     >>> arm = SimpleNamespace(place=lambda q: print(q.round(3)))
-    >>> LedArm(arm, [[-1.0, 1.0], [0.0, 6.0]]).place([2.0, -1.0])
+    >>> LimitedGuidedArm(arm, [[-1.0, 1.0], [0.0, 6.0]]).place([2.0, -1.0])
     [1.    5.283]
     """
 
@@ -60,11 +60,11 @@ class LedArm:
 
     @property
     def reach(self) -> Array:
-        """Angles (n, 2) to which the arm may be led, a turn per joint at most [rad]."""
+        """Angles (n, 2) to which the arm may be guided, a turn per joint at most [rad]."""
         return one_turn(self._limits)
 
     def place(self, q: ArrayLike) -> None:
-        """Lead the arm towards q (n,) [rad], as far as its limits allow."""
+        """Guide the arm towards q (n,) [rad], as far as its limits allow."""
         low, high = self._limits.T
         turned = turned_into(np.asarray(q, dtype=float), self._limits)
         self._arm.place(np.clip(turned, low + MARGIN, high - MARGIN))

@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 
 DIRECTIONS, GOALS, MOTORS = "direction-sampling", "goal-babbling", "motor-babbling"
 EXPLORATIONS = (DIRECTIONS, GOALS, MOTORS)
-LED = "guided-direction-sampling"
-"""Direction sampling where the arm is led and held, see `GuidedDirectionSampling`."""
+GUIDED_DIRECTIONS = "guided-direction-sampling"
+"""Direction sampling with a guided arm, see `GuidedDirectionSampling`."""
 GOAL_COUNT = 64
 """Goals of goal babbling, the number of the paper's targets for its 3R arm."""
 
@@ -37,7 +37,7 @@ def check_exploration(name: str) -> str:
     InputError
         If there is none of that name.
     """
-    known = (*EXPLORATIONS, LED)
+    known = (*EXPLORATIONS, GUIDED_DIRECTIONS)
     if name not in known:
         raise InputError("exploration", "strategy", name, ", ".join(known))
     return name
@@ -61,7 +61,7 @@ def exploration_by_name(
         ``direction-sampling``: random directions through the domain (Algorithm 2).
         ``goal-babbling``: straight paths between goals spread over the domain.
         ``motor-babbling``: random torques, moved to the nearest static torque.
-        ``guided-direction-sampling``: as the first, with an arm that is led and held.
+        ``guided-direction-sampling``: as the first, with a guided arm.
     arm, learner, rng
         As in ``Exploration``.
     domain
@@ -80,9 +80,9 @@ def exploration_by_name(
     check_exploration(name)
     if name == DIRECTIONS:
         return ConstrainedDirectionSampling(arm, learner, rng, domain=domain, **options)
-    if name == LED:
-        led = {k: v for k, v in options.items() if k not in ("static_torques", "home_torque")}
-        return GuidedDirectionSampling(arm, learner, rng, domain=domain, **led)
+    if name == GUIDED_DIRECTIONS:
+        guided = {k: v for k, v in options.items() if k not in ("static_torques", "home_torque")}
+        return GuidedDirectionSampling(arm, learner, rng, domain=domain, **guided)
     if name == MOTORS:
         return MotorBabbling(arm, learner, rng, **options)
     goals = _goals(domain, seen, rng)

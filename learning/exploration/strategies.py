@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning.arm import Arm, GuidedArm, Outcome
 from isotorque.learning.exploration.exploration import Counts, Exploration, ExplorationStep, Learner
-from isotorque.learning.exploration.exploration_region import ExplorationCell
+from isotorque.learning.exploration.exploration_region import ExplorationRegion
 from isotorque.learning.exploration.explored_share import ExploredShare
 from isotorque.learning.exploration.settings import ExplorationSettings
 from isotorque.learning.exploration.static_projection import StaticTorques
@@ -94,7 +94,7 @@ class DirectionSampling(Exploration):
 
 
 class GuidedDirectionSampling(Exploration):
-    """Direction sampling with an arm that is led from outside: every target is reached and held.
+    """Direction sampling with a guided arm: every target is reached and held.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def _direction_targets(exploration: Exploration, home: Vector) -> DirectionTarge
     settings = exploration.settings
     domain: Any = exploration._domain
     if hasattr(domain, "halfspaces"):
-        domain = ExplorationCell(domain)
+        domain = ExplorationRegion(domain)
     return DirectionTargets(
         home, settings.step_width, exploration._weights, settings.home_probability, domain
     )

@@ -109,7 +109,7 @@ class DirectionTargets:
     Notes
     -----
     A target that would leave the domain ends the direction. It is moved to the nearest point of
-    the domain (``ExplorationCell``; along the step where the domain cannot tell), so that targets
+    the domain (``ExplorationRegion``; along the step where the domain cannot tell), so that targets
     reach the boundary and its corners; then a new direction is drawn. From outside (home, or an
     observed configuration) targets approach the domain step by step. Eq. 13 prints ``|w^T dq|``
     where the norm ``|w * dq|`` is meant.

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.export.forms.canonical_copy import FoldedCopy
+from isotorque.learning.export.forms.canonical_copy import CanonicalCopy
 from isotorque.learning.export.forms.chain_recursion import ChainRecursion
 from isotorque.learning.export.forms.chain_with_kernels import ChainWithKernels
 from isotorque.learning.export.forms.kernels import Kernels
@@ -31,7 +31,7 @@ from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidC
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 from isotorque.learning.learners.rigid.structure.canonical_form import CanonicalForm
-from isotorque.learning.learners.sample_checks import fitted
+from isotorque.learning.learners.sample_checks import require_fitted
 from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ def torque_form(learner: Any) -> TorqueForm:
     """
     for kind, convert in CONVERSIONS.items():
         if isinstance(learner, kind):
-            fitted(learner)
+            require_fitted(learner)
             return convert(learner)
     accepted = ", ".join(kind.__name__ for kind in CONVERSIONS)
     raise InputError("export", "learner", type(learner).__name__, f"one of {accepted}")
@@ -95,10 +95,10 @@ def _network(learner: FeedForwardNetwork) -> TanhUnits:
     arrays, group = learner.to_arrays(), learner._coordinates
     periodic = learner.inputs == "sincos"
     outputs = learner.n_outputs_
-    copies: Copies | FoldedCopy
+    copies: Copies | CanonicalCopy
     if learner.symmetries == "canonical" and learner.group is not None:
-        assert learner._inputs.fold is not None
-        copies = FoldedCopy.of_domain(learner._inputs.fold.domain)
+        assert learner._inputs.canonical is not None
+        copies = CanonicalCopy.of_domain(learner._inputs.canonical.domain)
     elif learner.symmetries == "averaged":
         copies = Copies.of_group(group, outputs, wrapped=not periodic)
     else:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.base import BaseEstimator
 
-from isotorque.learning.learners.sample_checks import fitted
+from isotorque.learning.learners.sample_checks import require_fitted
 from isotorque.learning.learners.symmetry_coordinates import SavedGroup, SymmetryCoordinates
 
 
@@ -36,13 +36,13 @@ class SavedLearner(BaseEstimator, ABC):
 
     def to_arrays(self) -> dict[str, NDArray]:
         """Everything learned, as arrays; with ``parameters()`` all that a saved model needs."""
-        fitted(self)
+        require_fitted(self)
         group = {} if self.group is None else self._coordinates.to_arrays()
         return {**self._arrays(), **group}
 
     def parameters(self) -> dict[str, Any]:
         """Settings and counters as plain numbers (JSON), without the group."""
-        fitted(self)
+        require_fitted(self)
         settings = {k: v for k, v in self.get_params(deep=False).items() if k != "group"}
         state = {
             "joints": int(self.n_features_in_),

@@ -27,7 +27,7 @@ _TINY = 1e-300
 
 
 @dataclass(frozen=True, eq=False)
-class HeldOut:
+class CrossValidation:
     """How well samples are predicted by models that have not seen them.
 
     Attributes
@@ -71,7 +71,7 @@ class HeldOut:
         return np.array([i for i in np.argsort(-size) if self.outliers[i]][:count], dtype=np.int64)
 
 
-def held_out(
+def cross_validate(
     make: Callable[[], Any],
     q: ArrayLike,
     torque: ArrayLike,
@@ -79,7 +79,7 @@ def held_out(
     *,
     folds: int = FOLDS,
     poses: Poses | None = None,
-) -> HeldOut:
+) -> CrossValidation:
     """Cross-validate a learner, and find samples that do not fit the others.
 
     Parameters
@@ -97,7 +97,7 @@ def held_out(
 
     Returns
     -------
-    HeldOut
+    CrossValidation
 
     Raises
     ------
@@ -124,7 +124,7 @@ def held_out(
     >>> q = np.linspace(-1.0, 1.0, 30)[:, None]
     >>> torque = 3.0 * q + 0.01 * np.random.default_rng(1).normal(size=q.shape)
     >>> torque[7] += 5.0
-    >>> found = held_out(LinearRegression, q, torque, np.random.default_rng(0))
+    >>> found = cross_validate(LinearRegression, q, torque, np.random.default_rng(0))
     >>> np.flatnonzero(found.outliers).tolist(), round(found.rmse_of_others, 2)
     ([7], 0.01)
     """
@@ -146,7 +146,7 @@ def held_out(
             break
         outliers = found
         errors = _errors(make, samples, torques, part, outliers)
-    return HeldOut(errors, outliers, folds, poses)
+    return CrossValidation(errors, outliers, folds, poses)
 
 
 def _enough(used: Flags, part: NDArray[np.int64]) -> bool:

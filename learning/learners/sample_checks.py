@@ -93,7 +93,7 @@ def some_weight(sample_weight: Any) -> None:
         raise InputError("sample_weight", "every weight", "zero", "at least one number > 0")
 
 
-def fitted(learner: Any) -> None:
+def require_fitted(learner: Any) -> None:
     """Raise scikit-learn's NotFittedError if nothing has been learned yet."""
     if not hasattr(learner, "n_outputs_"):
         check_is_fitted(learner, "n_outputs_")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.learned_symmetries import (
     Knowledge,
@@ -124,7 +124,7 @@ def _shows_constants(learner: RigidChain, q: Array, tau: Array) -> bool:
 
     Relations that change their sign would then not hold of the measured torque.
     """
-    if learner.verdict_ is not Verdict.HELD_OUT:
+    if learner.verdict_ is not FitStatus.HELD_OUT:
         return False
     other = RigidChain(unknown_offsets=True, max_starts=STARTS).fit(q, tau)
     if not other.verdict_.accepted:

@@ -24,7 +24,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
 )
 from isotorque.learning.relations.static_samples import static_samples
 from isotorque.symbolic.common.angles import wrap
-from isotorque.symbolic.groups.group_arrays import SAME_OFFSET, CandidateGroup, completed
+from isotorque.symbolic.groups.group_arrays import SAME_ESTIMATED_OFFSET, CandidateGroup, completed
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]
@@ -150,7 +150,7 @@ def _in_basis(relation: SymmetryRelation, basis: NDArray[np.int64]) -> SymmetryR
 def _among(relation: SymmetryRelation, others: CandidateGroup) -> bool:
     match = (others.Y == relation.Y).all(axis=1)
     match &= (np.abs(others.A - relation.A_sat) < 1e-6).all(axis=(1, 2))
-    match &= (np.abs(wrap(others.d - relation.d_sat)) < SAME_OFFSET).all(axis=1)
+    match &= (np.abs(wrap(others.d - relation.d_sat)) < SAME_ESTIMATED_OFFSET).all(axis=1)
     return bool(match.any())
 
 

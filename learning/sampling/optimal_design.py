@@ -14,7 +14,7 @@ from isotorque.learning.learners.rigid.equivariant_basis import (
     multi_affine_frequencies,
     potential_basis,
 )
-from isotorque.learning.learners.sample_checks import fitted
+from isotorque.learning.learners.sample_checks import require_fitted
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
@@ -200,7 +200,7 @@ def least_variance(
     >>> design.value < 0.1, len(set(design.chosen))
     (True, 3)
     """
-    fitted(process)
+    require_fitted(process)
     points = _configurations("candidates", candidates, process.n_features_in_)
     if count < 1:
         raise InputError("design", "number of configurations", count, "at least 1")

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from isotorque.learning.simulator.settings import (
     EngineName,
-    MeasurementNoise,
     PhysicsMode,
+    SensorNoise,
     SettleRule,
 )
 
@@ -36,7 +36,7 @@ class SimulationSettings:
         Home configuration [rad].
     rule : SettleRule
         When the arm counts as settled.
-    noise : MeasurementNoise
+    noise : SensorNoise
         Errors of the sensors.
     """
 
@@ -47,7 +47,7 @@ class SimulationSettings:
     limits: tuple[tuple[float, float], ...]
     home: tuple[float, ...]
     rule: SettleRule
-    noise: MeasurementNoise
+    noise: SensorNoise
 
     def as_json(self) -> dict[str, Any]:
         """Return the settings as a JSON document; a joint without limit has null there."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ class Sensors:
     def __init__(
         self,
         where: str,
-        noise: MeasurementNoise,
+        noise: SensorNoise,
         projector: Array,
         rng: np.random.Generator | None,
     ) -> None:

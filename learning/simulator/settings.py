@@ -99,7 +99,7 @@ SMALLEST_STEP = 1e-15
 
 
 @dataclass(frozen=True)
-class MeasurementNoise:
+class SensorNoise:
     """Errors of the sensors; none by default.
 
     Attributes
@@ -128,7 +128,7 @@ class MeasurementNoise:
         _check_not_negative(self, tuple(f.name for f in fields(self)))
         if 0.0 < self.encoder_step < SMALLEST_STEP:
             accepted = f"0, or a number >= {SMALLEST_STEP:g} [rad]"
-            raise InputError("MeasurementNoise", "encoder_step", self.encoder_step, accepted)
+            raise InputError("SensorNoise", "encoder_step", self.encoder_step, accepted)
 
     @property
     def is_random(self) -> bool:

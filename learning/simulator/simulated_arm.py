@@ -11,8 +11,8 @@ from isotorque.learning.simulator.dynamics.equations import Array
 from isotorque.learning.simulator.results import ArmState
 from isotorque.learning.simulator.settings import (
     EngineName,
-    MeasurementNoise,
     PhysicsMode,
+    SensorNoise,
     SettleMode,
     SettleRule,
 )
@@ -99,7 +99,7 @@ class SimulatedArm(SimulatedBody):
         home: ArrayLike | None = None,
         settle: str | SettleMode = SettleMode.FINISHED,
         rule: SettleRule | None = None,
-        noise: MeasurementNoise | None = None,
+        noise: SensorNoise | None = None,
         rng: np.random.Generator | None = None,
         q0: ArrayLike | None = None,
     ) -> None:

@@ -15,8 +15,8 @@ from isotorque.learning.simulator.results import Hold, Release, SimulationSettin
 from isotorque.learning.simulator.sensors import Sensors
 from isotorque.learning.simulator.settings import (
     EngineName,
-    MeasurementNoise,
     PhysicsMode,
+    SensorNoise,
     SettleMode,
     SettleRule,
     choice,
@@ -43,14 +43,14 @@ class SimulatedBody:
         home: ArrayLike | None,
         settle: str | SettleMode,
         rule: SettleRule | None,
-        noise: MeasurementNoise | None,
+        noise: SensorNoise | None,
         rng: np.random.Generator | None,
     ) -> None:
         self.robot = robot
         self.physics = choice(PhysicsMode, robot.name, "physics", physics)
         self.engine = choice(EngineName, robot.name, "engine", engine)
         self.rule = rule or SettleRule(mode=choice(SettleMode, robot.name, "settle", settle))
-        self.noise = noise or MeasurementNoise()
+        self.noise = noise or SensorNoise()
         equations = new_equations(self.engine, robot.model)
         assembly = assemble(robot, equations, self.physics, damping, coulomb, limits, home)
         self._body = assembly.body

@@ -12,17 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 from isotorque.symbolic.common.angles import TURN
 from isotorque.symbolic.common.arrays import Floats, Integers
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.domains.canonical_representatives import CanonicalMap
 from isotorque.symbolic.domains.dirichlet_cell import DirichletCell, dirichlet_cell, tidy_halfspaces
 from isotorque.symbolic.domains.generic_center import generic_center
-from isotorque.symbolic.domains.orbit_representatives import Folder
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.symbolic.groups.torus_action import TorusAction, torus_action
 
 
 @dataclass(frozen=True, eq=False)
-class FoldedConfigurations:
-    """Configurations folded into a fundamental domain.
+class CanonicalConfigurations:
+    """Canonical representatives of configurations: one of each orbit, in the fundamental domain.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class FundamentalDomain:
         self._cell: DirichletCell = dirichlet_cell(
             self._action.A, self._action.d, self._from_y @ self.basis @ self.center
         )
-        self._folder = Folder(self._cell, self._action)
+        self._map = CanonicalMap(self._cell, self._action)
 
     @classmethod
     def near(cls, group: SymmetryGroup, q: ArrayLike) -> FundamentalDomain:
@@ -122,9 +122,9 @@ class FundamentalDomain:
         """
         default = cls(group)
         home = default._configurations(q)
-        folded = default.fold(home)
-        g = int(folded.relation)
-        back = default.basis @ default.center - group.d_sat[g] - TURN * folded.turns
+        found = default.representatives(home)
+        g = int(found.relation)
+        back = default.basis @ default.center - group.d_sat[g] - TURN * found.turns
         nearest = np.linalg.solve(group.A_sat[g], back)
         return cls(group, home + default._lift @ (nearest - default.basis @ home))
 
@@ -182,16 +182,16 @@ class FundamentalDomain:
         `contains_y` asks the same of the polytope itself, without full turns.
         """
         points = self._configurations(q)
-        folded = self._folder.fold(self._flat_y(points) @ self._from_y.T)
-        closed = folded.closed.reshape(points.shape[:-1])
+        found = self._map.representatives(self._flat_y(points) @ self._from_y.T)
+        closed = found.closed.reshape(points.shape[:-1])
         return closed if points.ndim > 1 else bool(closed)
 
-    def fold(self, q: ArrayLike) -> FoldedConfigurations:
+    def representatives(self, q: ArrayLike) -> CanonicalConfigurations:
         """Fold configurations ``q`` (..., n) [rad] into the domain.
 
         Returns
         -------
-        FoldedConfigurations
+        CanonicalConfigurations
             Representatives, the relations that lead there, and the full turns added.
 
         Raises
@@ -201,12 +201,12 @@ class FundamentalDomain:
         """
         points = self._configurations(q)
         y = self._flat_y(points)
-        folded = self._folder.fold(y @ self._from_y.T)
-        relation, turns = self._relations(folded.element, folded.turns)
+        found = self._map.representatives(y @ self._from_y.T)
+        relation, turns = self._relations(found.element, found.turns)
         shape = points.shape[:-1]
-        step = folded.points @ self._action.scale.T - y
+        step = found.points @ self._action.scale.T - y
         step[(relation == 0) & ~turns.any(axis=1)] = 0.0  # already there: exactly
-        return FoldedConfigurations(
+        return CanonicalConfigurations(
             (points.reshape(-1, self.group.n) + step @ self._lift.T).reshape(points.shape),
             relation.reshape(shape),
             turns.reshape(*shape, y.shape[1]),
@@ -231,20 +231,21 @@ class FundamentalDomain:
         Notes
         -----
         The same for every member of an orbit, also on the boundary; a representative is its own
-        representative. `fold` returns index arrays and the full turns instead of relations.
+        representative. `representatives` returns index arrays and the full turns instead
+        of relations.
         """
-        folded = self.fold(q)
-        if folded.relation.ndim == 0:
-            return folded.q, self.group[int(folded.relation)]
-        return folded.q, self._members[folded.relation]
+        found = self.representatives(q)
+        if found.relation.ndim == 0:
+            return found.q, self.group[int(found.relation)]
+        return found.q, self._members[found.relation]
 
     def sample(self, rng: np.random.Generator, m: int) -> Floats:
         """Draw ``m`` configurations uniformly from the domain, shape (m, n) [rad].
 
         Uniform in y = B q; components along free directions are those of the centre. (Points are
-        drawn from the whole torus and folded: relations preserve volume.)
+        drawn from the whole torus and replaced by representatives: relations preserve volume.)
         """
-        inside = self._folder.fold(rng.uniform(-np.pi, np.pi, (m, len(self.basis)))).points
+        inside = self._map.representatives(rng.uniform(-np.pi, np.pi, (m, len(self.basis)))).points
         y = inside @ self._action.scale.T
         return np.asarray(self.center + (y - self.basis @ self.center) @ self._lift.T)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from isotorque.symbolic.common.angles import TURN
 from isotorque.symbolic.common.arrays import Floats
 from isotorque.symbolic.domains.dirichlet_cell import invariant_metric
-from isotorque.symbolic.groups.direct_factors import independent_blocks
+from isotorque.symbolic.groups.direct_factors import direct_factors
 from isotorque.symbolic.lattices.short_vectors import reduced_basis
 
 _MOST_GRID_POINTS = 4096
@@ -39,7 +39,7 @@ def generic_center(A: NDArray[np.number], d: Floats) -> Floats:
     [1.5708]
     """
     center = np.zeros(d.shape[1])
-    for block in independent_blocks(np.round(A), d):
+    for block in direct_factors(np.round(A), d):
         center[block.coordinates] = _block_center(block.A, block.d)
     return center
 

@@ -8,7 +8,7 @@ from isotorque.symbolic.common.angles import circular_distance
 from isotorque.symbolic.common.arrays import Floats, Integers
 from isotorque.symbolic.common.errors import InputError
 
-SAME_OFFSET = 1e-2
+SAME_EXACT_OFFSET = 1e-2
 """Offsets that differ by less [rad] are taken as equal: those of learned relations fit together
 only nearly, and different relations of one matrix are much further apart."""
 
@@ -46,7 +46,7 @@ class RelationLookup:
             if members is not None:
                 distance = circular_distance(d[rows][:, None], self._d[members])
                 best = distance.argmin(axis=1)
-                near = distance[np.arange(len(rows)), best] < SAME_OFFSET
+                near = distance[np.arange(len(rows)), best] < SAME_EXACT_OFFSET
                 found[np.array(rows)[near]] = members[best[near]]
         if np.any(found < 0):
             row = int(np.argmin(found))

@@ -13,7 +13,7 @@ from isotorque.symbolic.common.connected_components import connected_components
 from isotorque.symbolic.groups.symmetry_group import DirectFactor, SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SAME_ANGLE, SymmetryRelation
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
-from isotorque.symbolic.symmetries.frequency_support import Support
+from isotorque.symbolic.symmetries.frequency_support import FrequencySupport
 from isotorque.symbolic.symmetries.phase_proof import PhaseProof
 from isotorque.symbolic.symmetries.sign_components import sign_components
 from isotorque.symbolic.symmetries.torque_signs import TorqueSigns
@@ -46,7 +46,7 @@ class BlockGroup(SymmetryGroup):
 
     def __init__(
         self,
-        support: Support,
+        support: FrequencySupport,
         classes: Integers,
         tolerance: float,
         proof: PhaseProof | None,

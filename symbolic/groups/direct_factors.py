@@ -10,11 +10,11 @@ import numpy as np
 from isotorque.symbolic.common.angles import circular_distance
 from isotorque.symbolic.common.arrays import Floats, Integers
 from isotorque.symbolic.common.connected_components import connected_components
-from isotorque.symbolic.groups.affine_map_index import SAME_OFFSET
+from isotorque.symbolic.groups.affine_map_index import SAME_EXACT_OFFSET
 
 
 @dataclass(frozen=True, eq=False)
-class TorusBlock:
+class DirectFactor:
     """A group acting on some of the coordinates by ``w -> A w + d`` modulo 2 pi.
 
     Attributes
@@ -30,7 +30,7 @@ class TorusBlock:
     d: Floats
 
 
-def independent_blocks(A: Floats, d: Floats) -> list[TorusBlock]:
+def direct_factors(A: Floats, d: Floats) -> list[DirectFactor]:
     """Split a group into a direct product over blocks of coordinates, as fine as it goes.
 
     Parameters
@@ -40,7 +40,7 @@ def independent_blocks(A: Floats, d: Floats) -> list[TorusBlock]:
 
     Returns
     -------
-    list of TorusBlock
+    list of DirectFactor
         One block with everything where the group is no such product.
 
     Notes
@@ -51,7 +51,7 @@ def independent_blocks(A: Floats, d: Floats) -> list[TorusBlock]:
     Examples
     --------
     >>> signs = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]])
-    >>> blocks = independent_blocks(np.array([np.diag(s) for s in signs]), np.zeros((4, 2)))
+    >>> blocks = direct_factors(np.array([np.diag(s) for s in signs]), np.zeros((4, 2)))
     >>> [len(block.A) for block in blocks]
     [2, 2]
     """
@@ -75,7 +75,7 @@ def independent_blocks(A: Floats, d: Floats) -> list[TorusBlock]:
         here = np.sort(np.concatenate([parts[i] for i in group]))
         _, first = np.unique(kinds[:, group], axis=0, return_index=True)
         first.sort()
-        blocks.append(TorusBlock(here, A[np.ix_(first, here, here)], d[np.ix_(first, here)]))
+        blocks.append(DirectFactor(here, A[np.ix_(first, here, here)], d[np.ix_(first, here)]))
     return blocks
 
 
@@ -99,7 +99,7 @@ def _kinds(A: Floats, d: Floats) -> Integers:
     left = np.arange(len(A))
     while len(left):
         same = (A[left] == A[left[0]]).all(axis=(1, 2))
-        same &= circular_distance(d[left], d[left[0]]) < SAME_OFFSET
+        same &= circular_distance(d[left], d[left[0]]) < SAME_EXACT_OFFSET
         kind[left[same]] = kind.max() + 1
         left = left[~same]
     return kind

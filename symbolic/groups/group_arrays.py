@@ -14,7 +14,7 @@ from isotorque.symbolic.lattices.integer_lattice import saturation
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SAME_OFFSET = 0.3
+SAME_ESTIMATED_OFFSET = 0.3
 """Offsets of one A and Y that differ by less [rad] are estimates of one offset."""
 
 
@@ -49,11 +49,11 @@ class CandidateGroup:
 
     def is_identity(self) -> NDArray[np.bool_]:
         """Which of the relations are the identity, shape (G,)."""
-        near = np.abs(wrap(self.d)).max(axis=1, initial=0.0) < SAME_OFFSET
+        near = np.abs(wrap(self.d)).max(axis=1, initial=0.0) < SAME_ESTIMATED_OFFSET
         linear = (np.abs(self.A - np.eye(self.d.shape[1])) < 1e-6).all(axis=(1, 2))
         return near & linear & (self.Y == 1.0).all(axis=1)
 
-    def products(self, tolerance: float = SAME_OFFSET) -> tuple[NDArray[np.intp], Array]:
+    def products(self, tolerance: float = SAME_ESTIMATED_OFFSET) -> tuple[NDArray[np.intp], Array]:
         """Multiplication table (G, G), -1 where a product is missing, and its defects.
 
         The defect of (i, j), shape (G, G, r), is A_i d_j + d_i - d_ij [rad]: how far the estimated
@@ -74,7 +74,7 @@ class CandidateGroup:
             defects[match] = defect[match]
         return table, defects
 
-    def composed(self, tolerance: float = SAME_OFFSET) -> CandidateGroup | None:
+    def composed(self, tolerance: float = SAME_ESTIMATED_OFFSET) -> CandidateGroup | None:
         """Same relations with offsets that obey the composition law, or None if not closed.
 
         `tolerance` is how far the given offsets may miss it [rad].
@@ -94,7 +94,7 @@ class CandidateGroup:
 MAX_ORDER = 256
 
 
-def completed(group: CandidateGroup, same: float = SAME_OFFSET) -> CandidateGroup | None:
+def completed(group: CandidateGroup, same: float = SAME_ESTIMATED_OFFSET) -> CandidateGroup | None:
     """Add all products.
 
     Parameters

@@ -27,7 +27,7 @@ def frequency_rows(values: ArrayLike) -> NDArray[np.int64]:
     return k.astype(np.int64)
 
 
-def folded(
+def canonical_terms(
     k: NDArray[np.int64], a: Coefficients, b: Coefficients
 ) -> tuple[NDArray[np.int64], Coefficients, Coefficients]:
     """Fold -k onto k, add equal rows, drop exact zeros; keep the order of first appearance.
@@ -75,4 +75,4 @@ def folded(
     for i, j in enumerate(place):
         if i != first[j]:
             new_a[j], new_b[j] = new_a[j] + a[i], new_b[j] + b[i]
-    return folded(k[first], new_a, new_b)
+    return canonical_terms(k[first], new_a, new_b)

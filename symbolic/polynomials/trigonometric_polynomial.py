@@ -18,7 +18,7 @@ from isotorque.symbolic.polynomials.coefficients import (
     to_float,
     to_sympy,
 )
-from isotorque.symbolic.polynomials.frequencies import folded, frequency_rows
+from isotorque.symbolic.polynomials.frequencies import canonical_terms, frequency_rows
 from isotorque.symbolic.polynomials.text import polynomial_text
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class TrigonometricPolynomial:
         names: tuple[str, ...] | None = None,
     ) -> None:
         k = frequency_rows(frequencies)
-        k, a, b = folded(k, *coefficient_arrays(len(k), cos, sin))
+        k, a, b = canonical_terms(k, *coefficient_arrays(len(k), cos, sin))
         object.__setattr__(self, "frequencies", k)
         object.__setattr__(self, "cos", a)
         object.__setattr__(self, "sin", b)

@@ -21,7 +21,7 @@ from isotorque.symbolic.symmetries.exact_symmetries import (
     restricted,
     specialised,
 )
-from isotorque.symbolic.symmetries.frequency_support import Support
+from isotorque.symbolic.symmetries.frequency_support import FrequencySupport
 from isotorque.symbolic.symmetries.residual_bound import residual_bound
 from isotorque.symbolic.symmetries.reynolds_average import joint_offsets, symmetric_part_error
 
@@ -119,7 +119,7 @@ def _maximal_of_block(potential: TrigonometricPolynomial, tolerance: float) -> l
     found: list[_Scored] = [_Scored(exact, 0.0)]
     seen: set[tuple[bytes, ...]] = set()
     for threshold in _thresholds(numeric.amplitudes(), tolerance):
-        support = Support.of(numeric, numeric.amplitudes() > threshold)
+        support = FrequencySupport.of(numeric, numeric.amplitudes() > threshold)
         if not len(support.K):
             continue
         candidates = _candidates(numeric, support, tolerance)
@@ -151,7 +151,7 @@ class _Scored:
 class _Candidate:
     """A relation of the terms above a threshold, its offset fitted on its own."""
 
-    support: Support
+    support: FrequencySupport
     Y: IntMatrix
     A_sat: Array
     d_sat: Array
@@ -167,7 +167,7 @@ def _thresholds(amplitude: Array, tolerance: float) -> list[float]:
 
 
 def _candidates(
-    potential: TrigonometricPolynomial, support: Support, tolerance: float
+    potential: TrigonometricPolynomial, support: FrequencySupport, tolerance: float
 ) -> list[_Candidate]:
     """Fit the offset of every structure that the support admits; keep those that may do."""
     out: list[_Candidate] = []
@@ -194,7 +194,9 @@ def _candidates(
     return out
 
 
-def _fitted(support: Support, s: IntMatrix, image: NDArray, weight: Array, start: Array) -> Array:
+def _fitted(
+    support: FrequencySupport, s: IntMatrix, image: NDArray, weight: Array, start: Array
+) -> Array:
     """Improve d_sat by weighted least squares over all phases."""
     phase = np.angle(image * s / support.C)
     root = np.sqrt(weight)

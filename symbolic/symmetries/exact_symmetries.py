@@ -11,7 +11,7 @@ from isotorque.symbolic.groups.block_group import BlockGroup
 from isotorque.symbolic.groups.product_group import ProductGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
-from isotorque.symbolic.symmetries.frequency_support import Support, amplitude_classes
+from isotorque.symbolic.symmetries.frequency_support import FrequencySupport, amplitude_classes
 from isotorque.symbolic.symmetries.phase_proof import PhaseProof
 
 RELATIVE = 1e-12
@@ -52,7 +52,7 @@ def exact_symmetries(
         own = np.any(numeric.frequencies[rows][:, joints], axis=1)
         rows = rows[own]
         part = restricted(numeric, rows, joints)
-        support = Support.of(part, np.ones(len(rows), dtype=bool))
+        support = FrequencySupport.of(part, np.ones(len(rows), dtype=bool))
         proof = None
         if potential.cos.dtype == object:
             proof = PhaseProof(restricted(potential, rows, joints), support, complete)

@@ -39,7 +39,7 @@ def amplitude_classes(amplitude: Array, tolerance: float) -> NDArray[np.int64]:
 
 
 @dataclass(frozen=True, eq=False)
-class Support:
+class FrequencySupport:
     """The frequencies that decide about symmetries, with what the theorem needs to know of them.
 
     Attributes
@@ -67,7 +67,7 @@ class Support:
     components: NDArray[np.int64]
 
     @classmethod
-    def of(cls, potential: TrigonometricPolynomial, keep: NDArray[np.bool_]) -> Support:
+    def of(cls, potential: TrigonometricPolynomial, keep: NDArray[np.bool_]) -> FrequencySupport:
         """Collect the terms of ``potential`` selected by ``keep`` (constants never count)."""
         keep = keep & np.any(potential.frequencies, axis=1)
         K, C = potential.frequencies[keep], potential.complex()[keep]

@@ -15,7 +15,7 @@ from isotorque.symbolic.polynomials.coefficients import is_expression, is_zero
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 
 if TYPE_CHECKING:
-    from isotorque.symbolic.symmetries.frequency_support import Support
+    from isotorque.symbolic.symmetries.frequency_support import FrequencySupport
 
 Gauss = tuple[Any, Any]
 UNITS = ((1, 0), (0, 1), (-1, 0), (0, -1))
@@ -38,7 +38,7 @@ class PhaseProof:
     """
 
     def __init__(
-        self, potential: TrigonometricPolynomial, support: Support, complete: bool
+        self, potential: TrigonometricPolynomial, support: FrequencySupport, complete: bool
     ) -> None:
         self.support, self.complete = support, complete
         index = {k.tobytes(): i for i, k in enumerate(np.ascontiguousarray(potential.frequencies))}

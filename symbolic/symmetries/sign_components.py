@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.symbolic.lattices.integer_lattice import generate_lattice, saturation
-from isotorque.symbolic.symmetries.frequency_support import Support
+from isotorque.symbolic.symmetries.frequency_support import FrequencySupport
 
 Array = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class SignComponent:
     expressed: NDArray[np.int64]
 
     @classmethod
-    def of(cls, support: Support, members: NDArray[np.int64]) -> SignComponent:
+    def of(cls, support: FrequencySupport, members: NDArray[np.int64]) -> SignComponent:
         """Collect what is needed for some rows of a support."""
         if len(members) == len(support.K):
             coordinates, lattice = support.coordinates, support.lattice
@@ -51,7 +51,7 @@ class SignComponent:
         rows = members[list(lattice.rows)]
         return cls(members, rows, lattice.coordinates(coordinates) @ lattice.T)
 
-    def misfit(self, support: Support, image: NDArray[np.complex128], s: int) -> float:
+    def misfit(self, support: FrequencySupport, image: NDArray[np.complex128], s: int) -> float:
         """Return the largest |C_{s Y k} - s C_k exp(i k.d)| for the offset of the generators.
 
         ``image`` holds C_{s Y k} for all rows of the support.
@@ -62,7 +62,7 @@ class SignComponent:
         return float(np.abs(value - turned).max(initial=0.0))
 
 
-def sign_components(support: Support) -> list[SignComponent]:
+def sign_components(support: FrequencySupport) -> list[SignComponent]:
     """Return the components of a support, in the order of their labels."""
     count = int(support.components.max(initial=-1)) + 1
     return [

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.symbolic.lattices.integer_lattice import coordinates_in, independent_rows
-from isotorque.symbolic.symmetries.frequency_support import Support
+from isotorque.symbolic.symmetries.frequency_support import FrequencySupport
 from isotorque.symbolic.symmetries.sign_components import SignComponent
 
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ class TorqueSigns:
 
     def __init__(
         self,
-        support: Support,
+        support: FrequencySupport,
         classes: Integers,
         components: list[SignComponent],
         tolerance: float,

@@ -164,7 +164,7 @@ def guided_run(
     robot: Robot, make: LearnerFactory, settings: ExplorationSettings, samples: int, seed: int,
     every: Callable[[int], int],
 ) -> LearningRun:  # fmt: skip
-    """Explore with an arm that is led to each target and held; exact symmetries.
+    """Explore with an arm that is guided to each target and held; exact symmetries.
 
     Parameters are those of `open_loop_run`.
     """

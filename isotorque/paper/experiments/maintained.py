@@ -64,4 +64,4 @@ def copies_held(
     robot: Robot, gravity: GravityModel, learner: Any, targets: Array, domain: FundamentalDomain
 ) -> int:
     """Count the targets whose symmetric copy in the explored domain the arm maintains."""
-    return int(maintained(robot, gravity, learner, domain.fold(targets).q)["held"].sum())
+    return int(maintained(robot, gravity, learner, domain.representatives(targets).q)["held"].sum())

@@ -87,7 +87,7 @@ def measure_literal(robot: Robot, seed: int, effort: Effort) -> Measured:
 
 
 def measure_guided_literal(robot: Robot, seed: int, effort: Effort) -> Measured:
-    """Run the literal LLM for 3000 iterations on an arm that is led and held."""
+    """Run the literal LLM for 3000 iterations on a guided arm."""
     samples = effort.of(LONG_ITERATIONS * SAMPLES_PER_ITERATION, 300)
     return _long_run(guided_run(robot, literal, SMALL_STEPS, samples, seed, _every))
 
@@ -131,23 +131,23 @@ def measure_iterated(robot: Robot, seed: int, effort: Effort) -> Measured:
 
 
 def measure_3r(robot: Robot, seed: int, effort: Effort) -> Measured:
-    """Run LLM_it on the 3R arm, without controller and led (Fig. 15A)."""
+    """Run LLM_it on the 3R arm, without controller and guided (Fig. 15A)."""
     commands = effort.of(ITERATIONS_3R * SAMPLES_PER_ITERATION, 200)
     free = open_loop_run(robot, iterated_3r, WIDE_STEPS, commands, seed, _every)
-    led = guided_run(robot, iterated_3r, WIDE_STEPS, commands, seed, _every)
+    guided = guided_run(robot, iterated_3r, WIDE_STEPS, commands, seed, _every)
     numbers: dict[str, Any] = {"explored_share": free.explored[-1]}
     for name, key in _SETS_3R.items():
         numbers[f"rmse_{key}"] = free.errors[-1][name]
         numbers[f"iterations_{key}"] = _iterations(free, name, RMSE_3R)
-        numbers[f"guided_rmse_{key}"] = led.errors[-1][name]
-        numbers[f"guided_iterations_{key}"] = _iterations(led, name, RMSE_3R)
-    stay = maintained(robot, led.gravity, led.learner, _targets(led, 64))
+        numbers[f"guided_rmse_{key}"] = guided.errors[-1][name]
+        numbers[f"guided_iterations_{key}"] = _iterations(guided, name, RMSE_3R)
+    stay = maintained(robot, guided.gravity, guided.learner, _targets(guided, 64))
     numbers["held_64"] = int(stay["held"].sum())
-    numbers["stable_64"] = int(is_stable(_targets(led, 64), led.gravity).sum())
+    numbers["stable_64"] = int(is_stable(_targets(guided, 64), guided.gravity).sum())
     pictures = {
         "maintained_64": stay,
         "curve": _curve(free, _SETS_3R),
-        "guided_curve": _curve(led, _SETS_3R),
+        "guided_curve": _curve(guided, _SETS_3R),
     }
     return Measured(numbers, pictures)
 

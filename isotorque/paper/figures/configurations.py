@@ -103,7 +103,7 @@ def arm_pictures(
         )  # fmt: skip
     if online is not None:
         yield _maintained(
-            "fig15a", "3r", "64 targets of the 3R arm, LLM_it, arm led and held while learning",
+            "fig15a", "3r", "64 targets of the 3R arm, LLM_it, guided arm while learning",
             online["maintained_64"],
         )  # fmt: skip
     if batch_3r is not None:

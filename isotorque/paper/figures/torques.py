@@ -69,7 +69,7 @@ def learning_pictures(
     """Draw Fig. 13 from all seeds, and the same with logarithmic axes."""
     curves = [
         _curve("LLM", [d["curve"] for d in literal], "66"),
-        _curve("LLM, arm led and held", [d["curve"] for d in guided], "66"),
+        _curve("LLM, guided arm", [d["curve"] for d in guided], "66"),
         _curve("LLM_it", [d["curve"] for d in iterated], "84"),
         _curve("LLM_it, kernel as printed", [d["printed_curve"] for d in iterated], "84"),
     ]

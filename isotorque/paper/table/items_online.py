@@ -24,7 +24,7 @@ def _open_loop_why(key: str) -> Value:
     return lambda n: (
         f"{text(n[key])}: an arm without controller gives way at the fold of its BCTS, few samples "
         "settle next to it, and targets lie there (the whole edge of the grid of 66); for the same "
-        "learner led and held see below"
+        "learner, guided, see below"
     )
 
 
@@ -64,7 +64,7 @@ def _online_2r(
 
 ONLINE_2R = (
     *_online_2r("", "literal-2r", _open_loop_why),
-    *_online_2r(", arm led and held", "guided-literal-2r", _guided_why),
+    *_online_2r(", guided arm", "guided-literal-2r", _guided_why),
     Item(
         "share of the BCTS explored after 3000 iterations", "7.1.1, Fig. 10", "literal-2r",
         number("explored_share"), 1.0, "", at_least(1.0 - MOST_OF_IT),
@@ -191,13 +191,13 @@ ONLINE_3R = (
         _stable_why,
     ),
     Item(
-        "iterations until 0.26 N m, 64 targets, arm led and held", "7.1.2", "online-3r",
+        "iterations until 0.26 N m, 64 targets, guided arm", "7.1.2", "online-3r",
         number("guided_iterations_64"), paper.ITERATIONS_3R, "iterations of 100", at_most(),
         lambda n: f"{text(n['guided_rmse_64'])} N m after 140 iterations",
         {"dense set": number("guided_iterations_dense")},
     ),
     Item(
-        "RMSE after 140 iterations, 64 targets, arm led and held", "7.1.2", "online-3r",
+        "RMSE after 140 iterations, 64 targets, guided arm", "7.1.2", "online-3r",
         number("guided_rmse_64"), paper.RMSE_3R, "N m", at_most(), settings_differ,
         {"dense set": number("guided_rmse_dense")},
     ),

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning.files.csv_samples import StaticSamples, joint_names_of, read_csv
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
-from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.fitting.gains import GainGroup
 from isotorque.learning.learners.rigid.misread_samples import other_reading
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
@@ -297,11 +297,11 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
 
     known = gains_by_joint(options.known_gains, names) if options.unknown_gains else None
     plain = learner = fitted(False)
-    if learner.verdict_ not in (Verdict.ROUNDING, Verdict.CHI_SQUARE, Verdict.TOO_FEW):
+    if learner.verdict_ not in (FitStatus.ROUNDING, FitStatus.CHI_SQUARE, FitStatus.TOO_FEW):
         learner = fitted(True)
     if learner.verdict_.accepted:
         return ChainFromData(options, names, samples, learner, learner.symmetries())
     reading = None
-    if learner.verdict_ is Verdict.MISFIT:
+    if learner.verdict_ is FitStatus.MISFIT:
         reading = other_reading(plain, q, tau, names)
     return ChainFromData(options, names, samples, learner, None, reading)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning.files.csv_samples import StaticSamples, read_csv
 from isotorque.learning.files.run_info import RunInfo
-from isotorque.learning.learners.cross_validation import HeldOut
+from isotorque.learning.learners.cross_validation import CrossValidation
 from isotorque.learning.learners.registry import LearningTask, check_learner
 from isotorque.learning.recordings.recorded_data import record_samples
 from isotorque.learning.recordings.recording import Recording
@@ -187,7 +187,7 @@ def _record(robot: Robot, samples: StaticSamples, out: Path) -> None:
         recording.finish()
 
 
-def _outliers(tried: HeldOut | None) -> dict[str, Any] | None:
+def _outliers(tried: CrossValidation | None) -> dict[str, Any] | None:
     if tried is None:
         return None
     worst = tried.worst(WORST)
@@ -210,7 +210,7 @@ def _symmetry_test(test: SupportedGroup | None) -> dict[str, Any] | None:
     }
 
 
-def _held_out(tried: HeldOut | None) -> dict[str, Any] | None:
+def _held_out(tried: CrossValidation | None) -> dict[str, Any] | None:
     if tried is None:
         return None
     return {

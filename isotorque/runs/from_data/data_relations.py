@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.files.csv_samples import StaticSamples
-from isotorque.learning.learners.cross_validation import HeldOut, held_out
+from isotorque.learning.learners.cross_validation import CrossValidation, cross_validate
 from isotorque.learning.learners.registry import LearningTask, learner_by_name
 from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted
 from isotorque.learning.relations.chain_identification import METHOD as CHAIN
@@ -36,7 +36,7 @@ class DataRelations:
     ----------
     group : SymmetryGroup or None
         The relations; None: none.
-    tried : HeldOut or None
+    tried : CrossValidation or None
         Errors of a learner with this group on held out poses, and outliers; None for one pose.
     test : SupportedGroup or None
         What the rows say of the relations first meant; None where there were none.
@@ -45,7 +45,7 @@ class DataRelations:
     """
 
     group: SymmetryGroup | None
-    tried: HeldOut | None
+    tried: CrossValidation | None
     test: SupportedGroup | None
     remarks: tuple[str, ...]
 
@@ -121,12 +121,12 @@ class RelationsOfData:
 
     def _tried(
         self, group: SymmetryGroup | None, learner: str | None = None
-    ) -> tuple[HeldOut | None, Flags]:
+    ) -> tuple[CrossValidation | None, Flags]:
         if self._poses.count < 2:
             return None, self._nobody()
         name = self._learner if learner is None else learner
         try:
-            found = held_out(
+            found = cross_validate(
                 lambda: learner_by_name(name, group, self._task),
                 self._samples.q,
                 self._samples.tau,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from isotorque.learning.files.csv_samples import StaticSamples
-from isotorque.learning.learners.cross_validation import HeldOut
+from isotorque.learning.learners.cross_validation import CrossValidation
 from isotorque.symbolic.robots.load_robot import Robot
 from isotorque.verify.models.measured_torques import Disagreement
 
@@ -19,7 +19,7 @@ MUCH_BETTER = 3.0
 """Times that another sign or unit must fit better to be suspected."""
 
 
-def outlier_remarks(tried: HeldOut | None, dropped: bool, count: int) -> tuple[str, ...]:
+def outlier_remarks(tried: CrossValidation | None, dropped: bool, count: int) -> tuple[str, ...]:
     """Say what held out rows tell: the error, and which rows do not fit the others."""
     if tried is None:
         return ("one pose only: no error on held out rows",)
@@ -38,7 +38,7 @@ def outlier_remarks(tried: HeldOut | None, dropped: bool, count: int) -> tuple[s
 
 
 def analytic_remarks(
-    compared: Disagreement, tried: HeldOut | None, samples: StaticSamples, robot: Robot
+    compared: Disagreement, tried: CrossValidation | None, samples: StaticSamples, robot: Robot
 ) -> tuple[str, ...]:
     """Say how the data disagree with the analytic gravity of the robot file."""
     joints = ", ".join(

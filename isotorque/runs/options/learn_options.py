@@ -61,11 +61,11 @@ def learn_options(
     if strategy == LATTICE and "physics" not in asked:
         asked["physics"] = PhysicsMode.GUIDED.value
     recorded = None if out is None else recorded_discovery(out)
-    led = False
+    guided = False
     if recorded is None:
         arm, n_min, confirm = ArmOptions(**asked), 2, 0
-        led = strategy == LATTICE and cannot_hold_itself(loaded, arm)
-        discovery = _discovering(arm, strategy, led)
+        guided = strategy == LATTICE and cannot_hold_itself(loaded, arm)
+        discovery = _discovering(arm, strategy, guided)
     else:
         discovery, n_min, confirm = recorded
         arm = replace(discovery, **asked)
@@ -82,7 +82,7 @@ def learn_options(
         discovery,
         confirm,
         anyway,
-        led_by_need=led,
+        guided_by_need=guided,
     )
 
 
@@ -121,14 +121,14 @@ def run_options(
     loaded = load_robot(robot)
     learner = default_learner(strategy, loaded.n) if learner is None else learner
     samples = default_samples(strategy, learner) if samples is None else samples
-    led = False
+    guided = False
     if physics is None or strategy == LATTICE:
-        led = strategy in (DIRECTIONS, LATTICE) and cannot_hold_itself(loaded, arm)
+        guided = strategy in (DIRECTIONS, LATTICE) and cannot_hold_itself(loaded, arm)
     if physics is None:
-        guided = led or strategy == LATTICE
+        guided = guided or strategy == LATTICE
         physics = (PhysicsMode.GUIDED if guided else PhysicsMode.OPEN_LOOP).value
     arm = replace(arm, physics=physics)
-    discovery = _discovering(arm, strategy, led)
+    discovery = _discovering(arm, strategy, guided)
     return RunOptions(
         robot,
         arm,
@@ -136,12 +136,12 @@ def run_options(
         learner=learner,
         strategy=strategy,
         discovery_arm=discovery,
-        led_by_need=led,
+        guided_by_need=guided,
         **others,
     )
 
 
-def _discovering(arm: ArmOptions, strategy: str, led: bool) -> ArmOptions:
-    """The arm of the discovery: it discovers by itself, and is led only where it cannot."""
-    alone = strategy == LATTICE and not led
+def _discovering(arm: ArmOptions, strategy: str, guided: bool) -> ArmOptions:
+    """The arm of the discovery: it discovers by itself, and is guided only where it cannot."""
+    alone = strategy == LATTICE and not guided
     return replace(arm, physics=PhysicsMode.OPEN_LOOP.value) if alone else arm

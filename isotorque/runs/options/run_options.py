@@ -107,7 +107,7 @@ class RunOptions:
         Whether to learn although fewer relations than ``n_min`` are known and confirmed.
     tolerance : float or None
         Torque error that the model is judged with [N m]; None: `default_tolerance`.
-    led_by_need : bool
+    guided_by_need : bool
         Whether the arm was found not to hold itself anywhere, and is guided for that.
     """
 
@@ -122,7 +122,7 @@ class RunOptions:
     confirm: int = 0
     learn_anyway: bool = False
     tolerance: float | None = None
-    led_by_need: bool = False
+    guided_by_need: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", RobotOptions.of(self.robot))
@@ -153,8 +153,8 @@ class RunOptions:
         return LEADER if self.learner in BATCH_LEARNERS else self.learner
 
     @property
-    def is_led(self) -> bool:
-        """Whether the arm is led along the directions of an exploration, not driven."""
+    def is_guided(self) -> bool:
+        """Whether the arm is guided along the directions of an exploration, not driven."""
         return self.strategy == DIRECTIONS and self.arm.physics == PhysicsMode.GUIDED
 
     def task(self, joints: int) -> LearningTask:

@@ -18,7 +18,7 @@ SLACK = 1e-6  # copies that miss the domain by no more are kept as candidates
 
 
 @dataclass(frozen=True, eq=False)
-class FoldedCopy:
+class CanonicalCopy:
     """Candidates ``y = A_c w + d_c``, w = B q wrapped; the one that lies deepest in the domain.
 
     Attributes
@@ -46,7 +46,7 @@ class FoldedCopy:
     halfspaces: Array
 
     @classmethod
-    def of_domain(cls, domain: FundamentalDomain) -> FoldedCopy:
+    def of_domain(cls, domain: FundamentalDomain) -> CanonicalCopy:
         """Candidates for a domain."""
         group, center = domain.group, domain.basis @ domain.center
         rows = np.array(domain.halfspaces, dtype=float)
@@ -151,20 +151,20 @@ static int copy_of(int first, const double *q, double *y)
 """
 
 
-def copies_to_arrays(copies: Copies | FoldedCopy) -> dict[str, NDArray]:
+def copies_to_arrays(copies: Copies | CanonicalCopy) -> dict[str, NDArray]:
     """Arrays by name, each name beginning with ``copy_``."""
     arrays = {"linear": copies.linear, "offset": copies.offset, "signs": copies.signs}
-    if isinstance(copies, FoldedCopy):
+    if isinstance(copies, CanonicalCopy):
         arrays |= {"basis": copies.basis, "halfspaces": copies.halfspaces}
     else:
         arrays["wrapped"] = np.array(copies.wrapped)
     return {f"copy_{name}": array for name, array in arrays.items()}
 
 
-def copies_from_arrays(arrays: dict[str, NDArray]) -> Copies | FoldedCopy:
+def copies_from_arrays(arrays: dict[str, NDArray]) -> Copies | CanonicalCopy:
     """Inverse of `copies_to_arrays`."""
     linear, offset, signs = (arrays[f"copy_{name}"] for name in ("linear", "offset", "signs"))
     if "copy_halfspaces" in arrays:
         basis, halfspaces = arrays["copy_basis"], arrays["copy_halfspaces"]
-        return FoldedCopy(basis, linear, offset, signs, halfspaces)
+        return CanonicalCopy(basis, linear, offset, signs, halfspaces)
     return Copies(linear, offset, signs, bool(arrays["copy_wrapped"]))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from isotorque.learning.export.forms.array_operations import Space
 from isotorque.learning.export.forms.c_tables import Tables
 from isotorque.learning.export.forms.canonical_copy import (
-    FoldedCopy,
+    CanonicalCopy,
     copies_from_arrays,
     copies_to_arrays,
 )
@@ -26,7 +26,7 @@ class TanhUnits:
 
     Attributes
     ----------
-    copies : Copies or FoldedCopy
+    copies : Copies or CanonicalCopy
         What the network is shown.
     periodic : bool
         Whether its inputs x are cos y, sin y or y / pi.
@@ -36,7 +36,7 @@ class TanhUnits:
         V and c [N m].
     """
 
-    copies: Copies | FoldedCopy
+    copies: Copies | CanonicalCopy
     periodic: bool
     hidden: Array
     output: Array

@@ -20,8 +20,8 @@ from isotorque.learning.learners.gaussian_process.symmetric_kernel import Symmet
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
@@ -143,7 +143,7 @@ class SymmetricGaussianProcess(TorqueRegressor, SavedLearner):
         return_std : bool
             Whether to return standard deviations (m, n) [N m] beside.
         """
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         mean, deviation = np.zeros((2, len(q), self.n_outputs_))
         waves = max((len(found) for found in self.waves_ if found is not None), default=0)

@@ -15,7 +15,7 @@ Integers = NDArray[np.int64]
 LARGEST_GRID = 2_000_000
 
 
-class CellGrid(NamedTuple):
+class CellList(NamedTuple):
     """Box cells over [-pi, pi)^r with a margin of ghost cells, entries sorted by cell.
 
     A point is entered once per periodic image that lies in the margin, so that a search never has
@@ -61,7 +61,7 @@ class CellGrid(NamedTuple):
     search_radius: float
 
 
-def make_cell_grid(isometry: Array, search_radius: float, cell_side: float) -> CellGrid:
+def make_cell_list(isometry: Array, search_radius: float, cell_side: float) -> CellList:
     """An empty cell list.
 
     Parameters
@@ -75,7 +75,7 @@ def make_cell_grid(isometry: Array, search_radius: float, cell_side: float) -> C
 
     Returns
     -------
-    CellGrid
+    CellList
         With room for no point yet (``with_room``). Without cells where their number would exceed
         ``LARGEST_GRID`` (many dimensions): then every search looks at all points.
     """
@@ -98,7 +98,7 @@ def make_cell_grid(isometry: Array, search_radius: float, cell_side: float) -> C
         row_first, row_cells = _rows(_reached_offsets(isometry * width, margin, search_radius))
         row_first = row_first @ strides
         start = np.zeros(int(np.prod(padded)) + 1, dtype=np.int32)
-    return CellGrid(
+    return CellList(
         (0.0,) * rank,
         np.ascontiguousarray(isometry, dtype=float),
         cells,
@@ -114,20 +114,20 @@ def make_cell_grid(isometry: Array, search_radius: float, cell_side: float) -> C
     )
 
 
-def images_per_point(grid: CellGrid) -> int:
+def images_per_point(grid: CellList) -> int:
     """Largest number of entries one point can need (0 without cells)."""
     if grid.start.size == 0:
         return 0
     return int(np.prod(1 + -(-2 * grid.margin // grid.cells)))
 
 
-def sees_several_images(grid: CellGrid) -> bool:
+def sees_several_images(grid: CellList) -> bool:
     """Whether one point can be found at two periodic images in one search."""
     reach = grid.search_radius * np.linalg.norm(np.linalg.inv(grid.isometry), axis=1)
     return bool(grid.start.size and np.any(reach >= np.pi))
 
 
-def with_room(grid: CellGrid, points: int) -> CellGrid:
+def with_room(grid: CellList, points: int) -> CellList:
     """The same list with room for ``points`` points (never less than it has)."""
     points = max(points, len(grid.point))
     entries = max(points * images_per_point(grid), len(grid.number))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning.learners.base import SavedLearner
 from isotorque.learning.learners.local_linear.cell_list import (
-    make_cell_grid,
+    make_cell_list,
     sees_several_images,
     with_room,
 )
@@ -25,8 +25,8 @@ from isotorque.learning.learners.local_linear.update_kernels import train
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
     some_weight,
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
@@ -180,7 +180,7 @@ class LocalLinearMap(TorqueRegressor, SavedLearner):
 
     def predict(self, X: Any) -> Array:
         """Torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         result = np.empty((len(q), self.n_outputs_))
         predict_batch(
@@ -191,7 +191,7 @@ class LocalLinearMap(TorqueRegressor, SavedLearner):
 
     def jacobian(self, X: Any) -> Array:
         """Estimated stiffness d torque / d q, (m, n, n) [N m / rad], the map's exact derivative."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         result = np.empty((len(q), self.n_outputs_, self._coordinates.rank))
         slope_batch(
@@ -203,7 +203,7 @@ class LocalLinearMap(TorqueRegressor, SavedLearner):
     @property
     def n_prototypes_(self) -> int:
         """Number of local linear functions M."""
-        fitted(self)
+        require_fitted(self)
         return int(self._counts[0])
 
     @property
@@ -278,7 +278,7 @@ class LocalLinearMap(TorqueRegressor, SavedLearner):
             symmetric.Y if outputs == joints else np.ones((1, outputs)),
         )
         kernel = self.kernel_width * self.radius
-        self._grid = make_cell_grid(symmetric.isometry, self.cutoff * kernel, self.radius)
+        self._grid = make_cell_list(symmetric.isometry, self.cutoff * kernel, self.radius)
         self._rule = Rule(
             (0.0,) * outputs,
             float(self.radius),

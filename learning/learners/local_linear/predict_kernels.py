@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.learners.local_linear.cell_list import CellGrid
+from isotorque.learning.learners.local_linear.cell_list import CellList
 from isotorque.learning.learners.local_linear.cell_list_search import find_far, find_near
 from isotorque.symbolic.common.compiled import compiled, tuple_setitem
 
@@ -73,7 +73,7 @@ class Scratch(NamedTuple):
     totals: Array
 
 
-def make_scratch(grid: CellGrid, outputs: int) -> Scratch:
+def make_scratch(grid: CellList, outputs: int) -> Scratch:
     """Room for everything a search in ``grid`` can find (one more row than that is touched)."""
     points, rank = grid.point.shape
     size = max(len(grid.number), points) + 2

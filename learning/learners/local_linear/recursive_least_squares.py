@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.learners.base import SavedLearner
-from isotorque.learning.learners.local_linear.cell_list import make_cell_grid, with_room
+from isotorque.learning.learners.local_linear.cell_list import make_cell_list, with_room
 from isotorque.learning.learners.local_linear.cell_list_search import enter
 from isotorque.learning.learners.local_linear.predict_kernels import make_scratch
 from isotorque.learning.learners.local_linear.square_root_filter import SquareRootFilter
@@ -23,8 +23,8 @@ from isotorque.learning.learners.memory.sample_dictionary import SampleDictionar
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
     some_weight,
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
@@ -175,7 +175,7 @@ class RecursiveLeastSquares(TorqueRegressor, SavedLearner):
 
     def predict(self, X: Any) -> Array:
         """Torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         solution = self._solve()
         features = self._features(q)
@@ -187,7 +187,7 @@ class RecursiveLeastSquares(TorqueRegressor, SavedLearner):
     @property
     def n_prototypes_(self) -> int:
         """Number of prototypes."""
-        fitted(self)
+        require_fitted(self)
         return int(self._counts[0])
 
     @property
@@ -232,7 +232,7 @@ class RecursiveLeastSquares(TorqueRegressor, SavedLearner):
         self._classes = [np.flatnonzero(member.ravel() == c) for c in range(len(columns))]
         self._symmetries = (symmetric.basis, symmetric.A_sat, symmetric.d_sat)
         self._images = np.empty((symmetric.order, symmetric.rank))
-        self._grid = make_cell_grid(
+        self._grid = make_cell_list(
             symmetric.isometry,
             self.cutoff * self.kernel_width * self.radius,
             1.5 * self.radius,

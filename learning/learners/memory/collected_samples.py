@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 
 class CollectedSamples:
-    """Stands in for a learner while an arm explores; fits the batch learner when asked.
+    """Batch learner that stands behind an exploration: an online learner leads it.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class CollectedSamples:
     >>> collected = CollectedSamples(leader, LinearRegression)
     >>> for q in (0.0, 1.0, 2.0):
     ...     _ = collected.partial_fit([[q]], [[3.0 * q]])
-    >>> collected.fitted().predict([[5.0]]).round(9).tolist()
+    >>> collected.fitted_learner().predict([[5.0]]).round(9).tolist()
     [[15.0]]
     """
 
@@ -56,7 +56,7 @@ class CollectedSamples:
         """Torques (m, n) [N m] as the leader estimates them."""
         return self._leader.predict(X)
 
-    def fitted(self) -> Any:
+    def fitted_learner(self) -> Any:
         """Return a batch learner fitted to all samples so far."""
         if self._fitted is None:
             learner = self._make_batch()

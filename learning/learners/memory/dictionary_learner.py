@@ -12,8 +12,8 @@ from isotorque.learning.learners.memory.sample_dictionary import SampleDictionar
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays
 from isotorque.learning.learners.torque_score import TorqueRegressor
@@ -99,7 +99,7 @@ class DictionaryLearner(TorqueRegressor, BaseEstimator):
 
     def predict(self, X: Any) -> Array:
         """Torques (m, k) [N m] estimated for configurations (m, n) [rad]."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         if self._stale:
             targets = self.dictionary_.torque

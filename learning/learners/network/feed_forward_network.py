@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.learners.base import SavedLearner
-from isotorque.learning.learners.network.canonical_fold import CanonicalFold
+from isotorque.learning.learners.network.canonical_coordinates import CanonicalCoordinates
 from isotorque.learning.learners.network.inputs import NetworkInputs
 from isotorque.learning.learners.network.tanh_layer import TanhLayer
 from isotorque.learning.learners.network.training import NetworkProblem, best_network
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
@@ -181,7 +181,7 @@ class FeedForwardNetwork(TorqueRegressor, SavedLearner):
 
     def predict(self, X: Any) -> Array:
         """Torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         parts = []
         for part in self._parts(q):
@@ -192,7 +192,7 @@ class FeedForwardNetwork(TorqueRegressor, SavedLearner):
 
     def jacobian(self, X: Any) -> Array:
         """Stiffness d torque / d q, (m, n, n) [N m / rad]: the exact derivative of ``predict``."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         parts = []
         for part in self._parts(q):
@@ -249,13 +249,13 @@ class FeedForwardNetwork(TorqueRegressor, SavedLearner):
             raise InputError("y", "number of columns", outputs, f"{joints}, one torque per joint")
         self._coordinates = SymmetryCoordinates.of(self.group, joints)
         self._signs = self._coordinates.Y if outputs == joints else np.ones((1, outputs))
-        folds = self.group is not None and self.symmetries == "canonical"
+        canonical = self.group is not None and self.symmetries == "canonical"
         averaged = self.symmetries == "averaged"
         self._inputs = NetworkInputs(
             self._coordinates,
             periodic=self.inputs == "sincos",
             averaged=averaged,
-            fold=CanonicalFold(self._coordinates) if folds else None,
+            canonical=CanonicalCoordinates(self._coordinates) if canonical else None,
         )
         self._layer = TanhLayer(
             self._inputs.count,

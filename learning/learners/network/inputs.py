@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.learners.network.canonical_fold import CanonicalFold
+from isotorque.learning.learners.network.canonical_coordinates import CanonicalCoordinates
 from isotorque.learning.learners.symmetry_coordinates import SymmetryCoordinates
 from isotorque.symbolic.common.angles import wrap
 
@@ -26,14 +26,14 @@ class NetworkInputs:
         Whether inputs are cos y, sin y (f = 2 r) or y / pi (f = r).
     averaged : bool
         Whether all copies under the group are shown (G = order) or one (G = 1).
-    fold : CanonicalFold or None
+    canonical : CanonicalCoordinates or None
         Show the representative in the fundamental domain instead.
     """
 
     coordinates: SymmetryCoordinates
     periodic: bool
     averaged: bool
-    fold: CanonicalFold | None
+    canonical: CanonicalCoordinates | None
 
     @property
     def count(self) -> int:
@@ -66,9 +66,9 @@ class NetworkInputs:
             Derivatives of x by y = B q.
         """
         signs = np.ones((1, 1))
-        if self.fold is not None:
-            folded, signs, linear = self.fold.fold(q)
-            y, linear = folded[:, None], linear[:, None]
+        if self.canonical is not None:
+            representatives, signs, linear = self.canonical.of(q)
+            y, linear = representatives[:, None], linear[:, None]
         elif self.averaged:
             images, _ = self.coordinates.copies(q, np.zeros((len(q), self.coordinates.Y.shape[1])))
             y = images.transpose(1, 0, 2)

@@ -18,8 +18,8 @@ from isotorque.learning.learners.rigid.equivariant_basis import (
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
@@ -143,7 +143,7 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
 
     def predict(self, X: Any) -> Array:
         """Measured torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         if self.potential:
             result = self._weighted_gradients(q) + self.offsets_
@@ -156,7 +156,7 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
 
         None for a loaded model, and where ``ridge`` was given.
         """
-        fitted(self)
+        require_fitted(self)
         if not getattr(self, "_roots", None):
             return None
         q = checked_configurations(self, X, first=False)
@@ -171,7 +171,7 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
 
     def jacobian(self, X: Any) -> Array:
         """Estimated stiffness d torque / d q, (m, n, n) [N m / rad]."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         return np.stack(
             [f.hessian(q)[:, i] if self.potential else f.gradient(q) for i, f in self._functions()],
@@ -186,14 +186,14 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         InputError
             If functions for every joint were fitted (``potential=False``).
         """
-        fitted(self)
+        require_fitted(self)
         require(self, "potential", self.potential, "True: only then there is one")
         return self._polynomial(self._coefficients[:, 0]).significant(1e-14)
 
     @property
     def n_coefficients_(self) -> int:
         """Numbers that the samples determine."""
-        fitted(self)
+        require_fitted(self)
         if self.potential:
             return self._bases[0].shape[1]
         return sum(b.shape[1] * len(j) for b, j in zip(self._bases, self._classes, strict=True))

@@ -19,7 +19,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 )
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
-from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus, NotAccepted
 from isotorque.learning.learners.rigid.fitting.gains import (
     GainGroup,
     gain_groups,
@@ -35,8 +35,8 @@ from isotorque.learning.learners.rigid.structure.snapping import LEVEL, SnappedC
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
 )
 from isotorque.learning.learners.torque_score import TorqueRegressor
 from isotorque.symbolic.common.errors import InputError
@@ -73,7 +73,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
 
     Attributes
     ----------
-    verdict_ : Verdict
+    verdict_ : FitStatus
         Whether the chain that was found may be used. Where not, ``remark_`` says what is missing
         and ``predict`` refuses.
     chain_ : ChainParameters
@@ -231,15 +231,15 @@ class RigidChain(TorqueRegressor, SavedLearner):
         return chain_symmetries(self.fit_, self.errors_, self.snapped(), tolerance)
 
     @property
-    def verdict_(self) -> Verdict:
+    def verdict_(self) -> FitStatus:
         """Whether the chain may be used, and why."""
-        fitted(self)
+        require_fitted(self)
         return self.fit_.verdict
 
     @property
     def remark_(self) -> str:
         """What is missing or speaks against the chain; empty where it is accepted."""
-        fitted(self)
+        require_fitted(self)
         return self.fit_.remark
 
     @property
@@ -251,7 +251,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         NotAccepted
             If it was not.
         """
-        fitted(self)
+        require_fitted(self)
         if not self.fit_.verdict.accepted:
             raise NotAccepted(self.fit_.verdict, self.fit_.remark)
         return self.fit_.chain
@@ -259,13 +259,13 @@ class RigidChain(TorqueRegressor, SavedLearner):
     @property
     def errors_(self) -> TorqueErrors:
         """Standard errors; repeated experiments are kept from one call to the next."""
-        fitted(self)
+        require_fitted(self)
         if self._errors is None:
             self._errors = TorqueErrors(self.fit_, self.random_state)
         return self._errors
 
     def _asked(self, X: Any) -> Array:
-        fitted(self)
+        require_fitted(self)
         return checked_configurations(self, X, first=False)
 
     def _samples(self, q: Array, torque: Array, weights: Array) -> ChainSamples:
@@ -339,7 +339,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
             k: float("nan") if state[k] is None else float(state[k])
             for k in ("p_value", "held_out")
         }
-        verdict = Verdict[state["verdict"]]
+        verdict = FitStatus[state["verdict"]]
         self._take(
             fit_at(
                 chain, samples, model, self._model.free_gains, verdict, int(state["starts"]), **more

@@ -15,8 +15,8 @@ from isotorque.learning.learners.base import SavedLearner
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
@@ -157,7 +157,7 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
 
         None for a loaded model, and where ``ridge`` was given.
         """
-        fitted(self)
+        require_fitted(self)
         root: Array | None = getattr(self, "_root", None)
         if root is None:
             return None
@@ -170,7 +170,7 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
 
     def predict(self, X: Any) -> Array:
         """Measured torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
-        fitted(self)
+        require_fitted(self)
         q = checked_configurations(self, X, first=False)
         result = self._regressors(q) @ self.parameters_ + self.offsets_
         return result[:, 0] if self._flat else result

@@ -10,7 +10,7 @@ from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import CandidateGroup
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
-from isotorque.symbolic.symmetries.frequency_support import Support
+from isotorque.symbolic.symmetries.frequency_support import FrequencySupport
 
 Array = NDArray[np.float64]
 Table = NDArray[np.intp]
@@ -45,7 +45,7 @@ def candidate_relations(
         fit.frequencies[keep], fit.coefficients[:m][keep], fit.coefficients[m:][keep]
     )
     error = np.hypot(fit.standard_error[:m], fit.standard_error[m:])[keep] / 2.0
-    support = Support.of(kept, np.ones(len(kept), dtype=bool))
+    support = FrequencySupport.of(kept, np.ones(len(kept), dtype=bool))
     rank = len(support.B)
     A: list[Array] = []
     d: list[Array] = []
@@ -75,7 +75,7 @@ def candidate_relations(
 
 
 def _improved_offset(
-    support: Support, s: NDArray[np.int64], image: NDArray, start: Array, limit: Array
+    support: FrequencySupport, s: NDArray[np.int64], image: NDArray, start: Array, limit: Array
 ) -> Array:
     """Least squares of all phases, from the solution on a basis of the lattice."""
     phase = np.angle(image * s / support.C)

@@ -30,7 +30,7 @@ from isotorque.learning.relations.potential.potential_fit import (
     present_frequencies,
     quantile,
 )
-from isotorque.learning.relations.potential.samples_needed import wanted_samples
+from isotorque.learning.relations.potential.samples_needed import samples_needed
 from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.statistics.lack_of_fit import LackOfFit
 from isotorque.learning.statistics.misfit_advice import misfit_advice
@@ -195,7 +195,7 @@ def claim(examined: ExaminedFit, best: GroupFit, snap: bool) -> LearnedSymmetrie
     excess /= LARGEST_ERROR
     if excess > 1.0:
         missing = (
-            f"{wanted_samples(fit.samples, excess)}: relations could still be wrong by "
+            f"{samples_needed(fit.samples, excess)}: relations could still be wrong by "
             f"{100.0 * LARGEST_ERROR * excess:.2g} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
             "are allowed"
         )

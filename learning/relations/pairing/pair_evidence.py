@@ -13,7 +13,7 @@ from isotorque.learning.relations.pairing.orbit_refinement import Refinement
 from isotorque.learning.relations.pairing.torque_pairs import Pairs
 from isotorque.learning.relations.potential.potential_fit import tail_probability
 from isotorque.symbolic.common.angles import wrap
-from isotorque.symbolic.groups.group_arrays import SAME_OFFSET, CandidateGroup
+from isotorque.symbolic.groups.group_arrays import SAME_ESTIMATED_OFFSET, CandidateGroup
 
 Array = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ class PairEvidence:
             if (
                 np.array_equal(found.Y, group.Y[i])
                 and np.array_equal(found.A, group.A[i])
-                and (np.abs(wrap(found.d - group.d[i])) < SAME_OFFSET).all()
+                and (np.abs(wrap(found.d - group.d[i])) < SAME_ESTIMATED_OFFSET).all()
             ):
                 return found.log10_false_alarms
         return float("nan")

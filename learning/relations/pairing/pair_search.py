@@ -34,10 +34,10 @@ from isotorque.learning.relations.potential.inactive_joints import (
     fit_on_active_joints,
     stood_still,
 )
-from isotorque.learning.relations.potential.samples_needed import no_torque
+from isotorque.learning.relations.potential.samples_needed import samples_with_torque_needed
 from isotorque.learning.statistics.poses import by_pose
 from isotorque.symbolic.common.angles import wrap
-from isotorque.symbolic.groups.group_arrays import SAME_OFFSET, CandidateGroup, completed
+from isotorque.symbolic.groups.group_arrays import SAME_ESTIMATED_OFFSET, CandidateGroup, completed
 
 Array = NDArray[np.float64]
 
@@ -129,7 +129,7 @@ def search_pairs(
     _, q, tau = by_pose(q, tau)  # a pose that was recorded twice is no second configuration
     active = active_joints(tau, noise)
     if not active.any():
-        raise Undetermined(no_torque(*tau.shape))
+        raise Undetermined(samples_with_torque_needed(*tau.shape))
     same = SAME_TORQUE * float(np.abs(tau).max())
     same = max(same, 6.0 * noise.torque if noise else 0.0)
     groups = group_by_torque(q[:, active], tau[:, active], same, SMALLEST_SHARE)
@@ -204,7 +204,7 @@ def _consistent_group(
                 np.concatenate([group.d, relation.d[None]]),
                 np.concatenate([group.Y, relation.Y[None]]),
             ),
-            min(SAME_OFFSET, max(MISSED_ROUNDING, MISSED_DEVIATIONS * tolerance.sigma)),
+            min(SAME_ESTIMATED_OFFSET, max(MISSED_ROUNDING, MISSED_DEVIATIONS * tolerance.sigma)),
         )
         if larger is None:
             continue
@@ -228,7 +228,7 @@ def _lost(
 def _place(relation: AcceptedRelation, group: CandidateGroup) -> list[int]:
     """Where a relation stands in a group (nowhere, or in one place)."""
     match = (group.A == relation.A).all(axis=(1, 2))
-    match &= (np.abs(wrap(group.d - relation.d)) < SAME_OFFSET).all(axis=1)
+    match &= (np.abs(wrap(group.d - relation.d)) < SAME_ESTIMATED_OFFSET).all(axis=1)
     return np.flatnonzero(match).tolist()
 
 

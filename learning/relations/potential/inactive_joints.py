@@ -15,7 +15,10 @@ from isotorque.learning.relations.potential.potential_fit import (
     fit_potential,
     present_frequencies,
 )
-from isotorque.learning.relations.potential.samples_needed import no_torque, wanted_samples
+from isotorque.learning.relations.potential.samples_needed import (
+    samples_needed,
+    samples_with_torque_needed,
+)
 from isotorque.symbolic.common.angles import wrap
 
 Array = NDArray[np.float64]
@@ -64,7 +67,7 @@ def fit_on_active_joints(
     """
     active = active_joints(tau, noise)
     if not active.any():
-        raise Undetermined(no_torque(*tau.shape))
+        raise Undetermined(samples_with_torque_needed(*tau.shape))
     while True:
         fit = fit_potential(q, tau, all_frequencies(q.shape[1], active), noise)
         involved, unmoved = silent_dependence(q, tau, fit, active, largest_error, noise)
@@ -129,7 +132,7 @@ def depends_on_joint(
     excess = float(doubt / (largest_error * np.sqrt(np.mean(tau**2))))
     if excess > 1.0:
         raise Undetermined(
-            f"{wanted_samples(wider.samples, excess)}: whether the torque depends on joint "
+            f"{samples_needed(wider.samples, excess)}: whether the torque depends on joint "
             f"{joint + 1}, whose own torque was always zero, is lost in the noise"
         )
     return False

@@ -8,7 +8,7 @@ MOST = 100_000
 """More samples than this are not counted out: other torques would tell sooner."""
 
 
-def wanted_samples(given: int, excess: float) -> str:
+def samples_needed(given: int, excess: float) -> str:
     """Say how many more samples bring an error down to what is allowed.
 
     Parameters
@@ -21,9 +21,9 @@ def wanted_samples(given: int, excess: float) -> str:
 
     Examples
     --------
-    >>> wanted_samples(20, 2.0)
+    >>> samples_needed(20, 2.0)
     'about 60 more samples'
-    >>> wanted_samples(20, 1e5)
+    >>> samples_needed(20, 1e5)
     'more than 100000 more samples like these 20, or other torques'
     """
     more = given * (excess**2 - 1.0)
@@ -32,7 +32,7 @@ def wanted_samples(given: int, excess: float) -> str:
     return f"about {max(1, int(np.ceil(more)))} more samples"
 
 
-def no_torque(given: int, joints: int) -> str:
+def samples_with_torque_needed(given: int, joints: int) -> str:
     """Say what is missing where no sample has a torque.
 
     Parameters
@@ -45,7 +45,7 @@ def no_torque(given: int, joints: int) -> str:
 
     Examples
     --------
-    >>> no_torque(0, 2)
+    >>> samples_with_torque_needed(0, 2)
     '6 samples with a torque: none was given'
     """
     wanted = -(-(3**joints) // joints) + 1

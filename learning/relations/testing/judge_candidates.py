@@ -18,7 +18,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
 )
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
 from isotorque.learning.relations.potential.pull_backs import PullBacks
-from isotorque.learning.relations.potential.samples_needed import wanted_samples
+from isotorque.learning.relations.potential.samples_needed import samples_needed
 from isotorque.learning.relations.static_samples import static_samples
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.group_arrays import CandidateGroup
@@ -146,7 +146,7 @@ def _judged(relation: SymmetryRelation, examined: ExaminedFit) -> JudgedCandidat
     acting = typical > 0.0
     excess = float((rms[0, acting] / typical[acting]).max(initial=0.0)) / LARGEST_ERROR
     if excess > 1.0:
-        reason = f"{wanted_samples(fit.samples, excess)}: a violation could hide in the noise"
+        reason = f"{samples_needed(fit.samples, excess)}: a violation could hide in the noise"
         return JudgedCandidate(bounded, Judgement.UNTESTABLE, p_value, reason)
     return JudgedCandidate(bounded, Judgement.CONSISTENT, p_value)
 

@@ -44,14 +44,14 @@ def test_an_arm_that_nothing_holds_is_led_and_that_is_said(tmp_path, capsys):
     words = [robot, "--out", str(tmp_path / "out"), *FAST[:-1]]
     assert status(["run", *words]) in (0, 1)
     said = capsys.readouterr().err.replace("\r", "\n").splitlines()
-    assert sum("cannot hold itself within its limits: it is led" in line for line in said) == 1
+    assert sum("cannot hold itself within its limits: it is guided" in line for line in said) == 1
     report = json.loads((tmp_path / "out" / "report.json").read_text())
     assert report["setup"]["physics"] == "guided"
     assert "--physics guided" in report["setup"]["command"]
     assert any("cannot hold itself" in remark for remark in report["remarks"])
     assert "cannot hold itself" in (tmp_path / "out" / "report.html").read_text()
     assert report["totals"]["rmse_torque"] < 1e-3
-    # asked for, it is led just so; on its own it is refused with what would work
+    # asked for, it is guided just so; on its own it is refused with what would work
     _, asked = run(capsys, *words, "--physics", "guided", "--out", str(tmp_path / "out"))
     assert asked["totals"]["rmse_torque"] == report["totals"]["rmse_torque"]
     other = ["--physics", "open_loop", "--out", str(tmp_path / "alone")]

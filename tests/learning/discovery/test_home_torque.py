@@ -12,7 +12,7 @@ from isotorque.learning.discovery.home_torque import (
     holds_itself,
     measure_home_torque,
 )
-from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.two_link_arm import ROBOT
@@ -60,7 +60,7 @@ def test_a_hanging_arm_is_asked_once():
 
 
 def test_it_is_found_through_noise():
-    noise = MeasurementNoise(angle=1e-3, torque=0.01, encoder_step=1e-3)
+    noise = SensorNoise(angle=1e-3, torque=0.01, encoder_step=1e-3)
     arm = propped([-0.9, 0.1], noise=noise, rng=np.random.default_rng(1))
     _, torque = result(find_home_torque(arm))
     arm.go_home()

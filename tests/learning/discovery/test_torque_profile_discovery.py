@@ -7,7 +7,7 @@ from isotorque.learning.arm import OutcomeKind
 from isotorque.learning.discovery.motor_babbling import FIRST_TORQUE, babble
 from isotorque.learning.discovery.torque_limits import TorqueLimitedArm
 from isotorque.learning.discovery.torque_profile_discovery import DiscoverySettings, lead
-from isotorque.learning.exploration.guided_arm import LedArm
+from isotorque.learning.exploration.guided_arm import LimitedGuidedArm
 from isotorque.learning.scheme import Scheme, SchemeSettings
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.robots.load_robot import load_robot
@@ -44,9 +44,9 @@ def test_nothing_more_is_tried_where_no_torque_is_found():
     assert len(outcomes) == 2
 
 
-def test_a_led_arm_is_taken_everywhere_within_its_limits():
+def test_a_guided_arm_is_taken_everywhere_within_its_limits():
     robot = load_robot("panda")
-    arm = LedArm(SimulatedArm(robot, physics="guided"), robot.limits)
+    arm = LimitedGuidedArm(SimulatedArm(robot, physics="guided"), robot.limits)
     q = np.array([o.q for o in lead(arm, arm.reach, np.random.default_rng(0), 200)])
     low, high = robot.limits.T
     assert (q >= low).all()
@@ -56,9 +56,11 @@ def test_a_led_arm_is_taken_everywhere_within_its_limits():
 
 def test_a_scheme_leads_a_guided_arm_that_cannot_hold_itself(tmp_path):
     arm = propped([0.9, 0.1], width=0.6, physics="guided")
-    led = LedArm(arm, arm.limits)
-    settings = SchemeSettings(DiscoverySettings(babbling=20, led=10), guided=True, max_targets=2)
-    scheme = Scheme(led, np.random.default_rng(0), lambda *_: None, settings)
+    guided = LimitedGuidedArm(arm, arm.limits)
+    settings = SchemeSettings(
+        DiscoverySettings(babbling=20, guided_places=10), guided=True, max_targets=2
+    )
+    scheme = Scheme(guided, np.random.default_rng(0), lambda *_: None, settings)
     motions = list(scheme.discover())
     assert scheme.home_torque is None
     assert scheme.learned is not None
@@ -90,5 +92,5 @@ def test_no_torque_beyond_the_largest_is_ever_commanded():
 
 
 def test_settings_that_make_no_sense_are_refused():
-    with pytest.raises(ValueError, match="led is 0"):
-        DiscoverySettings(led=0)
+    with pytest.raises(ValueError, match="guided_places is 0"):
+        DiscoverySettings(guided_places=0)

@@ -11,7 +11,7 @@ RANGE = [24.5, 6.2]
 HOME = planar_arm.torque([-np.pi / 4, -np.pi / 4])[0]
 
 
-class Cell:
+class ToyDomain:
     """The fundamental domain in which the arm can hold itself."""
 
     def contains(self, q):
@@ -86,7 +86,7 @@ class Recorder:
 def constrained(seed=0, learner=None, arm=None, **options):
     """A constrained direction sampling of the ideal arm."""
     rng = np.random.default_rng(seed)
-    options = {"home_torque": HOME, "torque_range": RANGE, "domain": Cell()} | options
+    options = {"home_torque": HOME, "torque_range": RANGE, "domain": ToyDomain()} | options
     options.setdefault("static_torques", TrueStaticTorques())
     if learner is None:
         learner = LocalLinearMap(0.25, group=planar_arm.group(), inner_iterations=None, replay=2)

@@ -1,4 +1,4 @@
-"""Tests of the cell that exploration uses against the domain it comes from and a QP solver."""
+"""Tests of the region that exploration uses against the domain it comes from and a QP solver."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from isotorque.learning.exploration.exploration_region import ExplorationCell
+from isotorque.learning.exploration.exploration_region import ExplorationRegion
 from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
@@ -23,12 +23,12 @@ def domain(request):
 def test_contains_what_the_domain_contains(domain, seed):
     """Random points, full turns added, and points of the domain itself."""
     rng = np.random.default_rng(seed)
-    cell = ExplorationCell(domain)
+    region = ExplorationRegion(domain)
     n = domain.basis.shape[1]
     for q in rng.uniform(-np.pi, np.pi, (5, n)) + 2 * np.pi * rng.integers(-2, 3, (5, n)):
-        assert cell.contains(q) == domain.contains(q)
+        assert region.contains(q) == domain.contains(q)
     for q in domain.sample(rng, 3):
-        assert cell.contains(q)
+        assert region.contains(q)
 
 
 @settings(max_examples=10, deadline=None)
@@ -36,11 +36,11 @@ def test_contains_what_the_domain_contains(domain, seed):
 def test_nearest_is_the_solution_of_the_quadratic_program(domain, seed):
     """SciPy's SLSQP on the half-spaces in the averaged metric finds the same point."""
     rng = np.random.default_rng(seed)
-    cell = ExplorationCell(domain)
+    region = ExplorationRegion(domain)
     inside = domain.sample(rng, 1)[0]
     outside = inside + rng.normal(0, 0.7, len(inside))
-    moved = cell.nearest(outside)
-    assert domain.contains(moved) or np.abs(domain.fold(moved).q - moved).max() < 1e-6
+    moved = region.nearest(outside)
+    assert domain.contains(moved) or np.abs(domain.representatives(moved).q - moved).max() < 1e-6
     metric = np.einsum("gki,gkj->ij", domain.group.A_sat, domain.group.A_sat)
     metric /= np.linalg.det(metric) ** (1 / len(metric))
     rows = domain.halfspaces
@@ -64,6 +64,6 @@ def test_nearest_is_the_solution_of_the_quadratic_program(domain, seed):
 
 
 def test_points_inside_stay(domain):
-    cell = ExplorationCell(domain)
+    region = ExplorationRegion(domain)
     for q in domain.sample(np.random.default_rng(0), 20):
-        assert np.array_equal(cell.nearest(q), q)
+        assert np.array_equal(region.nearest(q), q)

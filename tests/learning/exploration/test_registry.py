@@ -1,4 +1,4 @@
-"""Explorations by name, and the arm that is led within its limits."""
+"""Explorations by name, and the arm that is guided within its limits."""
 
 from types import SimpleNamespace
 
@@ -8,8 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from isotorque.learning.exploration.exploration import Exploration
-from isotorque.learning.exploration.guided_arm import LedArm
-from isotorque.learning.exploration.registry import EXPLORATIONS, LED, exploration_by_name
+from isotorque.learning.exploration.guided_arm import LimitedGuidedArm
+from isotorque.learning.exploration.registry import (
+    EXPLORATIONS,
+    GUIDED_DIRECTIONS,
+    exploration_by_name,
+)
 from isotorque.learning.exploration.strategies import GuidedDirectionSampling
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.common.errors import InputError
@@ -20,7 +24,7 @@ from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 GROUP = close([SymmetryRelation(np.eye(2), [np.pi, 0], [-1, -1])])
 
 
-@pytest.mark.parametrize("name", [*EXPLORATIONS, LED])
+@pytest.mark.parametrize("name", [*EXPLORATIONS, GUIDED_DIRECTIONS])
 @pytest.mark.parametrize("domain", [None, FundamentalDomain(GROUP)], ids=["anywhere", "domain"])
 def test_every_name_makes_another_exploration(name, domain):
     made = exploration_by_name(
@@ -29,7 +33,7 @@ def test_every_name_makes_another_exploration(name, domain):
         static_torques=None,
     )  # fmt: skip
     assert isinstance(made, Exploration)
-    assert isinstance(made, GuidedDirectionSampling) == (name == LED)
+    assert isinstance(made, GuidedDirectionSampling) == (name == GUIDED_DIRECTIONS)
     if name == "goal-babbling":
         goals = made._goals
         assert len(np.unique(goals, axis=0)) == len(goals) == 64
@@ -52,10 +56,10 @@ def test_another_name_is_refused():
     st.lists(st.floats(-20, 20), min_size=3, max_size=3),
     st.lists(st.tuples(st.floats(-6, 3), st.floats(0.1, 12)), min_size=3, max_size=3),
 )
-def test_an_arm_is_led_to_the_nearest_place_within_limits(q, sides):
+def test_an_arm_is_guided_to_the_nearest_place_within_limits(q, sides):
     limits = np.array([[low, low + width] for low, width in sides])
     places = []
-    LedArm(SimpleNamespace(place=places.append), limits).place(q)
+    LimitedGuidedArm(SimpleNamespace(place=places.append), limits).place(q)
     (place,) = places
     assert ((place > limits[:, 0]) & (place < limits[:, 1])).all()
     for angle, asked, (low, high) in zip(place, q, limits, strict=True):

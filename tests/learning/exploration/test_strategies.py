@@ -22,9 +22,9 @@ from isotorque.symbolic.common.errors import InputError
 from tests.learning.exploration.explored_arm import (
     HOME,
     RANGE,
-    Cell,
     Recorder,
     ScriptedArm,
+    ToyDomain,
     TrueStaticTorques,
     constrained,
     rmse,
@@ -45,7 +45,7 @@ def test_algorithm_2_step_by_step(seed):
         q = step.outcome.q
         assert isinstance(step.outcome, Settled)
         assert static_torques.contains(step.torque * 0.9999)
-        assert step.phase is Phase.HOME or Cell().contains(step.target)
+        assert step.phase is Phase.HOME or ToyDomain().contains(step.target)
         wanted, moved = step.target - previous, q - previous
         lengths = np.linalg.norm(wanted) * np.linalg.norm(moved)
         cosine = wanted @ moved / lengths if lengths > 0 else 0.0
@@ -141,7 +141,7 @@ def test_home_visits_are_single_steps():
 def test_learns_the_torque_map_and_sees_the_whole_domain():
     """Starting from one torque, the arm learns its torques on the whole torus."""
     rng = np.random.default_rng(0)
-    explored = ExploredShare(Cell().sample(rng, 400), 0.25, planar_arm.group())
+    explored = ExploredShare(ToyDomain().sample(rng, 400), 0.25, planar_arm.group())
     exploration, learner = constrained(0, explored=explored)
     steps = list(exploration.steps(600))
     shares = [s.explored for s in steps]
@@ -254,12 +254,12 @@ def test_guided_sampling_visits_every_target_and_measures_there():
 
     learner = RecursiveLeastSquares(group=planar_arm.group())
     exploration = GuidedDirectionSampling(
-        Guided(), learner, np.random.default_rng(0), domain=Cell(), torque_range=RANGE
+        Guided(), learner, np.random.default_rng(0), domain=ToyDomain(), torque_range=RANGE
     )
     steps = list(exploration.steps(100))
     for step in steps[1:]:
         assert np.abs(step.outcome.q - step.target).max() < 1e-12
-        assert Cell().contains(step.target)
+        assert ToyDomain().contains(step.target)
         assert not step.projected
     assert rmse(learner) < 0.0053
 
@@ -291,7 +291,7 @@ def test_goal_babbling_walks_to_its_goals():
         np.random.default_rng(0),
         goals,
         static_torques=TrueStaticTorques(),
-        domain=Cell(),
+        domain=ToyDomain(),
         torque_range=RANGE,
         home_torque=HOME,
         settings=ExplorationSettings(step_width=0.1, home_probability=0.0),
@@ -313,7 +313,7 @@ def test_goals_outside_the_domain_are_refused():
                 np.random.default_rng(0),
                 [[1.0, 1.0]],
                 static_torques=TrueStaticTorques(),
-                domain=Cell(),
+                domain=ToyDomain(),
                 torque_range=RANGE,
                 home_torque=HOME,
             ).steps(1)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from sklearn.linear_model import LinearRegression
 from sklearn.model_selection import PredefinedSplit, cross_val_predict
 
-from isotorque.learning.learners.cross_validation import held_out
+from isotorque.learning.learners.cross_validation import cross_validate
 from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
 
 
@@ -21,7 +21,7 @@ def line(seed, count, noise):
 @settings(max_examples=30)
 def test_errors_are_those_of_scikit_learn(seed, count, folds):
     q, torque = line(seed, count, 0.1)
-    found = held_out(LinearRegression, q, torque, np.random.default_rng(seed), folds=folds)
+    found = cross_validate(LinearRegression, q, torque, np.random.default_rng(seed), folds=folds)
     assert found.folds == min(folds, count)
     if found.outliers.any():
         return
@@ -37,7 +37,7 @@ def test_errors_are_those_of_scikit_learn(seed, count, folds):
 @settings(max_examples=30)
 def test_normal_errors_hold_no_outliers(seed):
     q, torque = line(seed, 100, 0.1)
-    found = held_out(LinearRegression, q, torque, np.random.default_rng(seed))
+    found = cross_validate(LinearRegression, q, torque, np.random.default_rng(seed))
     assert found.outliers.sum() <= 1  # 6 estimated standard deviations
 
 
@@ -49,7 +49,7 @@ def test_gross_errors_are_found_and_named_in_order(seed, number, size):
     rows = rng.choice(80, number, replace=False)
     sizes = size * 1.5 ** np.arange(number)
     torque[rows, rng.integers(0, 2, number)] += sizes * rng.choice([-1, 1], number)
-    found = held_out(LinearRegression, q, torque, np.random.default_rng(seed))
+    found = cross_validate(LinearRegression, q, torque, np.random.default_rng(seed))
     assert set(rows) <= set(np.flatnonzero(found.outliers))
     assert found.outliers.sum() <= number + 1
     assert found.worst(number).tolist() == rows[::-1].tolist()
@@ -61,7 +61,7 @@ def test_an_outlier_behind_a_larger_one_is_found():
     q, torque = line(0, 60, 0.01)
     torque[3, 0] += 0.5
     torque[40] += 1000.0
-    found = held_out(LinearRegression, q, torque, np.random.default_rng(0))
+    found = cross_validate(LinearRegression, q, torque, np.random.default_rng(0))
     assert np.flatnonzero(found.outliers).tolist() == [3, 40]
 
 
@@ -71,12 +71,14 @@ def test_rounding_errors_are_no_outliers(seed):
     q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (40, 2))
     lower = 6.0 * np.cos(q.sum(axis=1))
     torque = np.stack([18.0 * np.cos(q[:, 0]) + lower, lower], axis=1)
-    found = held_out(EquivariantTrigonometric, q, torque, np.random.default_rng(seed))
+    found = cross_validate(EquivariantTrigonometric, q, torque, np.random.default_rng(seed))
     assert not found.outliers.any()
     assert found.rmse < 1e-10
 
 
 def test_two_samples_are_enough():
-    found = held_out(LinearRegression, [[0.0], [1.0]], [[1.0], [2.0]], np.random.default_rng(0))
+    found = cross_validate(
+        LinearRegression, [[0.0], [1.0]], [[1.0], [2.0]], np.random.default_rng(0)
+    )
     assert found.folds == 2
     np.testing.assert_allclose(np.abs(found.errors), 1.0)  # each predicts itself for the other

@@ -67,11 +67,11 @@ def test_collected_samples_are_all_fitted_once_and_unweighted():
     buffer = np.array([[3.0]])
     collected.partial_fit(buffer, [[4.0]], [0.0])
     buffer[:] = 9.0  # what was given may change afterwards
-    assert collected.fitted() is collected.fitted()
+    assert collected.fitted_learner() is collected.fitted_learner()
     assert fits == [([[1.0], [3.0]], [[2.0], [4.0]])]
     assert taught == [[0.5], [0.0]]
     assert collected.predict([[0.0]]).tolist() == [[7.0]]
     collected.partial_fit([[5.0]], [[6.0]])
-    collected.fitted()
+    collected.fitted_learner()
     assert len(fits) == 2
     assert fits[1][0] == [[1.0], [3.0], [5.0]]

@@ -10,13 +10,13 @@ from isotorque.learning.recordings.recorded_command import CommandKind
 from isotorque.learning.recordings.recorded_simulation import RecordedSimulation
 from isotorque.learning.recordings.recording import Recording
 from isotorque.learning.recordings.recording_reader import RecordingReader
-from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.recordings.recording_tools import tables
 
-NOISE = MeasurementNoise(angle=1e-3, torque=1e-2, encoder_step=1e-4, holding_torque=5e-3)
+NOISE = SensorNoise(angle=1e-3, torque=1e-2, encoder_step=1e-4, holding_torque=5e-3)
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
 )
 from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
 from isotorque.learning.scheme import Scheme, SchemeSettings
-from isotorque.learning.simulator.settings import MeasurementNoise as SensorNoise
+from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation

@@ -43,8 +43,8 @@ def test_all_points_lie_within_limits(limits, count, seed, group):
     again = reachable_lattice(group, limits, count, home, np.random.default_rng(seed))
     np.testing.assert_array_equal(found.q, again.q)
     if group is not None and count > 1:  # no two points of one orbit
-        folded = FundamentalDomain(group).fold(found.q).q
-        gaps = np.linalg.norm(folded[:, None] - folded[None], axis=2)
+        found = FundamentalDomain(group).representatives(found.q).q
+        gaps = np.linalg.norm(found[:, None] - found[None], axis=2)
         assert gaps[~np.eye(count, dtype=bool)].min() > 1e-9
 
 

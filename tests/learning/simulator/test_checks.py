@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from isotorque.learning.simulator.results import ArmState
-from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.common.errors import InputError
 from tests.learning.two_link_arm import ARM, ROBOT
@@ -32,7 +32,7 @@ from tests.learning.two_link_arm import ARM, ROBOT
         (lambda arm: SimulatedArm(ROBOT, engine="bullet"), "engine is bullet; .* compiled, pino"),
         (lambda arm: SimulatedArm(ROBOT, settle="almost"), "settle is almost; .* finished, raw"),
         (lambda arm: SimulatedArm(ROBOT, q0=[0.0, 9.0]), "q0 of joint .* is 9.0"),
-        (lambda arm: SimulatedArm(ROBOT, noise=MeasurementNoise(angle=0.1)), "rng is None"),
+        (lambda arm: SimulatedArm(ROBOT, noise=SensorNoise(angle=0.1)), "rng is None"),
     ],
 )
 def test_bad_input_is_refused_in_one_line_and_nothing_moves(action, message):

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isotorque.learning.simulator.results import ArmState
-from isotorque.learning.simulator.settings import MeasurementNoise, SettleRule
+from isotorque.learning.simulator.settings import SensorNoise, SettleRule
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from tests.learning.two_link_arm import GRAVITY, ROBOT, stable_targets
 
@@ -32,7 +32,7 @@ def identical(one, other):
 @given(seed=st.integers(0, 2**32 - 1), cut=st.integers(0, 8))
 @settings(max_examples=10)
 def test_restored_from_json_it_goes_on_bit_for_bit(engine, seed, cut):
-    noise = MeasurementNoise(angle=1e-3, torque=1e-2)
+    noise = SensorNoise(angle=1e-3, torque=1e-2)
 
     def new_arm(seed):
         rng = np.random.default_rng(seed)

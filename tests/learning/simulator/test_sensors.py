@@ -3,14 +3,14 @@
 import numpy as np
 
 from isotorque.learning.arm import Settled
-from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.two_link_arm import GRAVITY, ROBOT
 
 
 def test_noise_has_the_size_that_was_asked_for():
-    noise = MeasurementNoise(angle=0.01, torque=0.1)
+    noise = SensorNoise(angle=0.01, torque=0.1)
     arm = SimulatedArm(ROBOT, noise=noise, rng=np.random.default_rng(1))
     target = np.array([-1.3, -0.2])
     outcomes = [arm.apply(GRAVITY(target)) for _ in range(400)]
@@ -24,7 +24,7 @@ def test_noise_has_the_size_that_was_asked_for():
 
 def test_encoders_count_steps():
     step = 2 * np.pi / 4096
-    arm = SimulatedArm(ROBOT, noise=MeasurementNoise(encoder_step=step))
+    arm = SimulatedArm(ROBOT, noise=SensorNoise(encoder_step=step))
     q = arm.apply(GRAVITY(np.array([-1.3, -0.2]))).q
     assert np.allclose(q / step, np.round(q / step), atol=1e-9)
     assert np.abs(q - [-1.3, -0.2]).max() <= step / 2 + 1e-9
@@ -32,7 +32,7 @@ def test_encoders_count_steps():
 
 def test_free_joints_get_neither_torque_nor_noise():
     robot = load_robot("ur5")
-    noise = MeasurementNoise(torque=0.1, holding_torque=0.1)
+    noise = SensorNoise(torque=0.1, holding_torque=0.1)
     arm = SimulatedArm(robot, "guided", noise=noise, rng=np.random.default_rng(2))
     free = np.abs(arm.equations.stiffness(arm.home)).max(axis=0) < 1e-9
     assert free.tolist() == [True, False, False, False, True, True]

@@ -4,8 +4,8 @@ import pytest
 
 from isotorque.learning.simulator.settings import (
     EngineName,
-    MeasurementNoise,
     PhysicsMode,
+    SensorNoise,
     SettleMode,
     SettleRule,
     choice,
@@ -32,16 +32,16 @@ def test_tolerances_are_positive(name):
 @pytest.mark.parametrize("name", ["angle", "torque", "encoder_step", "holding_torque"])
 @pytest.mark.parametrize("value", [-1e-9, float("nan")])
 def test_noise_is_finite_and_not_negative(name, value):
-    with pytest.raises(InputError, match=f"MeasurementNoise: {name} is"):
-        MeasurementNoise(**{name: value})
+    with pytest.raises(InputError, match=f"SensorNoise: {name} is"):
+        SensorNoise(**{name: value})
 
 
 def test_only_some_noise_is_random():
-    assert not MeasurementNoise().is_random
-    assert not MeasurementNoise(encoder_step=0.1).is_random
-    assert MeasurementNoise(angle=0.1).is_random
-    assert MeasurementNoise(torque=0.1).is_random
-    assert MeasurementNoise(holding_torque=0.1).is_random
+    assert not SensorNoise().is_random
+    assert not SensorNoise(encoder_step=0.1).is_random
+    assert SensorNoise(angle=0.1).is_random
+    assert SensorNoise(torque=0.1).is_random
+    assert SensorNoise(holding_torque=0.1).is_random
 
 
 def test_words_become_members():

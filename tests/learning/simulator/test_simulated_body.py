@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isotorque.learning.arm import Settled
-from isotorque.learning.simulator.settings import MeasurementNoise
+from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.common.errors import InputError
 from tests.learning.two_link_arm import ARM, GRAVITY, ROBOT, stable_targets
@@ -64,7 +64,7 @@ def test_a_guided_arm_is_placed_and_its_holding_torque_measured():
 
 
 def test_the_error_of_a_holding_torque_is_bounded():
-    noise = MeasurementNoise(holding_torque=0.01)
+    noise = SensorNoise(holding_torque=0.01)
     arm = SimulatedArm(ROBOT, "guided", noise=noise, rng=np.random.default_rng(0))
     arm.place([0.3, 0.4])
     errors = np.array([arm.hold().torque - GRAVITY(np.array([0.3, 0.4])) for _ in range(300)])

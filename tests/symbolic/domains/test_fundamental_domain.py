@@ -201,10 +201,10 @@ def test_shapes_of_batches():
     domain = FundamentalDomain(primary_symmetries(planar([3.0, 2.0, 1.0])))
     q = configurations(0, 24, 3).reshape(2, 3, 4, 3)
     q0, relations = domain.canonicalise(q)
-    folded = domain.fold(q)
+    found = domain.representatives(q)
     assert q0.shape == q.shape
-    assert relations.shape == folded.relation.shape == (2, 3, 4)
-    assert folded.turns.shape == (2, 3, 4, 3)
+    assert relations.shape == found.relation.shape == (2, 3, 4)
+    assert found.turns.shape == (2, 3, 4, 3)
     one, relation = domain.canonicalise(q[1, 2, 3])
     np.testing.assert_array_equal(one, q0[1, 2, 3])
     assert relation is relations[1, 2, 3]
@@ -237,7 +237,7 @@ def test_unusable_centres_are_refused(center, match):
 
 def test_unusable_configurations_are_refused():
     domain = FundamentalDomain(primary_symmetries(two_r()))
-    for use in (domain.contains, domain.canonicalise, domain.fold):
+    for use in (domain.contains, domain.canonicalise, domain.representatives):
         with pytest.raises(InputError, match="shape"):
             use([1.0, 2.0, 3.0])
         with pytest.raises(InputError, match="finite"):

@@ -7,7 +7,7 @@ import numpy as np
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.symbolic.symmetries.exact_symmetries import RELATIVE, specialised
-from isotorque.symbolic.symmetries.frequency_support import Support, amplitude_classes
+from isotorque.symbolic.symmetries.frequency_support import FrequencySupport, amplitude_classes
 from isotorque.symbolic.symmetries.phase_proof import PhaseProof
 
 
@@ -16,7 +16,7 @@ def enumerated_symmetries(potential: TrigonometricPolynomial) -> SymmetryGroup:
     numeric = specialised(potential)
     amplitude = numeric.amplitudes()
     limit = RELATIVE * float(amplitude.max(initial=0.0))
-    support = Support.of(numeric, amplitude > limit)
+    support = FrequencySupport.of(numeric, amplitude > limit)
     proof = None
     if potential.cos.dtype == object:
         complete = len(support.K) == int(np.any(potential.frequencies, axis=1).sum())

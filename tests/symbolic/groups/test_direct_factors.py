@@ -9,7 +9,7 @@ from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.domains.dirichlet_cell import dirichlet_cell
 from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 from isotorque.symbolic.domains.generic_center import generic_center
-from isotorque.symbolic.groups.direct_factors import independent_blocks
+from isotorque.symbolic.groups.direct_factors import direct_factors
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from tests.symbolic.gravity.small_potentials import potentials, three_r, two_r
@@ -41,7 +41,7 @@ def test_two_arms_on_one_base_fold_like_each_alone(first, second):
 def test_product_of_2r_and_3r():
     group = primary_symmetries(side_by_side(two_r(), three_r()))
     assert group.order == 8 * 16
-    blocks = independent_blocks(group.A_sat, group.d_sat)
+    blocks = direct_factors(group.A_sat, group.d_sat)
     assert sorted(len(block.A) for block in blocks) == [4, 4, 8]
     domain = FundamentalDomain(group)
     assert ConvexHull(domain.vertices).volume == pytest.approx(domain.volume)
@@ -53,11 +53,11 @@ def test_product_of_2r_and_3r():
 
 def test_a_group_that_couples_its_coordinates_is_one_block():
     group = primary_symmetries(two_r())
-    blocks = independent_blocks(group.A_sat, group.d_sat)
+    blocks = direct_factors(group.A_sat, group.d_sat)
     assert len(blocks) == 1
     np.testing.assert_array_equal(blocks[0].A, group.A_sat)
     turned = [np.eye(2), -np.eye(2)]  # acts on separate coordinates, but on both at once
-    assert len(independent_blocks(np.array(turned), np.zeros((2, 2)))) == 1
+    assert len(direct_factors(np.array(turned), np.zeros((2, 2)))) == 1
 
 
 def test_many_joints_side_by_side_are_no_trouble():

@@ -16,7 +16,7 @@ from isotorque.learning.learners.rigid.fitting.chain_search import (
     best_of,
     polished,
 )
-from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.fitting.noise_estimate import (
     FOLDS,
     held_out_error,
@@ -101,7 +101,7 @@ def fit_chain(
     some = UNKNOWN_NOISE_STARTS * (5 if model.free_gains.any() or model.columns else 1)
     exact = _to_rounding(fit, starts if noise_known else min(starts, some))
     if exact is not None or noise_known:
-        return exact or fit.refused(Verdict.MISFIT, _misfit(fit))
+        return exact or fit.refused(FitStatus.MISFIT, _misfit(fit))
     fewer = _with_findable_gains(samples, model, CARRYING_SHARE[1])
     if not np.array_equal(fewer.free_gains, fit.model.free_gains):
         fit.model, fit.found = fewer, []
@@ -136,14 +136,14 @@ def _to_rounding(fit: StartSearch, starts: int) -> ChainFit | None:
 
 
 def _exact(fit: StartSearch, found: SearchedChain) -> ChainFit:
-    result = fit.result(Verdict.ROUNDING, found)
+    result = fit.result(FitStatus.ROUNDING, found)
     error = result.standard_error(probe_poses(fit.model.n)).max()
     if result.degrees < 1 or not error < KNOWN_EVERYWHERE * fit.samples.largest_torque:
         weightless = fit.samples.largest_torque <= LEAST_FLOOR
         if weightless and fit.samples.poses >= poses_needed(fit.model):
             return result
         fit.found = [found]
-        return fit.refused(Verdict.TOO_FEW, _too_few(fit))
+        return fit.refused(FitStatus.TOO_FEW, _too_few(fit))
     return result
 
 
@@ -153,7 +153,7 @@ def _within_noise(fit: StartSearch) -> ChainFit:
     firm = fit.samples.equations - most_parameters(model)
     if firm < model.n or samples.poses < poses_needed(model) + 1:
         fit.try_random()
-        return fit.refused(Verdict.TOO_FEW, _too_few(fit, poses_needed(model) + 1))
+        return fit.refused(FitStatus.TOO_FEW, _too_few(fit, poses_needed(model) + 1))
     # few equations to spare say little: more starts, to see whether there are rivals
     fewest = FEWEST_STARTS if firm >= 2 * model.n else UNKNOWN_NOISE_STARTS
     warm = bool(fit.found)
@@ -168,7 +168,7 @@ def _within_noise(fit: StartSearch) -> ChainFit:
         if fit.exhausted:
             best = fit.best()
             remark = f"{_misfit(fit)} (chance {_p_value(fit, best):.2g})"
-            return fit.refused(Verdict.MISFIT, remark, p_value=_p_value(fit, best))
+            return fit.refused(FitStatus.MISFIT, remark, p_value=_p_value(fit, best))
         fit.try_random()
     better = polished(samples, best, model)
     if better.cost <= best.cost:
@@ -180,10 +180,10 @@ def _within_noise(fit: StartSearch) -> ChainFit:
             f"more poses: chains whose torques differ by {rival:.3g} N m (RMS) elsewhere explain "
             "the samples equally well"
         )
-        return fit.result(Verdict.AMBIGUOUS, best, remark=remark, p_value=likely)
-    result = fit.result(Verdict.CHI_SQUARE, best, p_value=likely)
+        return fit.result(FitStatus.AMBIGUOUS, best, remark=remark, p_value=likely)
+    result = fit.result(FitStatus.CHI_SQUARE, best, p_value=likely)
     if not _known_elsewhere(result):
-        return fit.result(Verdict.TOO_FEW, best, remark=_too_few(fit), p_value=likely)
+        return fit.result(FitStatus.TOO_FEW, best, remark=_too_few(fit), p_value=likely)
     return result
 
 
@@ -221,7 +221,7 @@ def _by_held_out(fit: StartSearch) -> ChainFit:
     # what is left when a fold is left out must still determine the chain
     if exact.poses - -(-exact.poses // FOLDS) <= poses_needed(model):
         exhaustive = _to_rounding(fit, fit.most)
-        return exhaustive or fit.refused(Verdict.TOO_FEW, _too_few_to_hold_out(fit))
+        return exhaustive or fit.refused(FitStatus.TOO_FEW, _too_few_to_hold_out(fit))
     size = float(np.sqrt(np.mean(exact.torque**2)))
     spare = exact.equations - most_parameters(model)
     accepted = HELD_OUT_SHARE * min(1.0, spare / (4 * model.n)) * size
@@ -235,13 +235,15 @@ def _by_held_out(fit: StartSearch) -> ChainFit:
             noisy, found = with_estimated_noise(exact, best, model)
             fit.samples = noisy
             error = held_out_error(noisy, found, model)
-            result = fit.result(Verdict.HELD_OUT, found, held_out=error)
+            result = fit.result(FitStatus.HELD_OUT, found, held_out=error)
             fit.samples = exact
             if error <= accepted:
                 if _known_elsewhere(result):
                     return result
                 fit.samples = noisy
-                left_open = fit.result(Verdict.TOO_FEW, found, remark=_too_few(fit), held_out=error)
+                left_open = fit.result(
+                    FitStatus.TOO_FEW, found, remark=_too_few(fit), held_out=error
+                )
                 fit.samples = exact  # go on: another start may explain the samples exactly
             judged = result
         if fit.exhausted:
@@ -253,14 +255,14 @@ def _by_held_out(fit: StartSearch) -> ChainFit:
         return left_open
     remark = _misfit(fit)
     if judged is None:
-        return fit.refused(Verdict.MISFIT, remark)
+        return fit.refused(FitStatus.MISFIT, remark)
     remark += (
         f"; it errs by {judged.held_out:.3g} N m (RMS) at poses left out of the fit, "
         f"{accepted:.3g} are accepted where the noise is not stated"
     )
     fit.samples = judged.samples
     found = SearchedChain(judged.chain, judged.cost, judged.whitening)
-    return fit.result(Verdict.MISFIT, found, remark=remark, held_out=judged.held_out)
+    return fit.result(FitStatus.MISFIT, found, remark=remark, held_out=judged.held_out)
 
 
 def _too_few(fit: StartSearch, needed: int = 0) -> str:

@@ -12,7 +12,7 @@ from scipy import stats
 from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
-from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.planning.information import Information
 
 Array = NDArray[np.float64]
@@ -24,7 +24,7 @@ class ChainFit:
 
     Attributes
     ----------
-    verdict : Verdict
+    verdict : FitStatus
         Whether the chain may be used, and why.
     chain : ChainParameters
         The best chain found. Where the verdict is not an acceptance it must not be used.
@@ -48,7 +48,7 @@ class ChainFit:
         RMS torque error at poses left out [N m] where noise was estimated, NaN otherwise.
     """
 
-    verdict: Verdict
+    verdict: FitStatus
     chain: ChainParameters
     samples: ChainSamples
     model: ChainModel
@@ -74,9 +74,9 @@ class ChainFit:
         what they mean for a normal variable (Student's quantile, degrees of freedom per joint).
         For exact samples whatever rounding there is.
         """
-        if self.verdict is Verdict.ROUNDING:
+        if self.verdict is FitStatus.ROUNDING:
             return max(1e-4, float(np.sqrt(self.cost / max(self.degrees, 1))))
-        if self.verdict is Verdict.HELD_OUT:
+        if self.verdict is FitStatus.HELD_OUT:
             freedom = max(self.degrees / self.model.n, 1.0)
             return float(stats.t.isf(stats.norm.sf(3.0), freedom)) / 3.0
         return 1.0
@@ -91,7 +91,7 @@ def fit_at(
     samples: ChainSamples,
     model: ChainModel,
     asked_gains: NDArray[np.bool_],
-    verdict: Verdict,
+    verdict: FitStatus,
     starts: int,
     **more: Any,
 ) -> ChainFit:

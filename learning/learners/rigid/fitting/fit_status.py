@@ -7,7 +7,7 @@ from enum import StrEnum
 from isotorque.symbolic.common.errors import InputError
 
 
-class Verdict(StrEnum):
+class FitStatus(StrEnum):
     """How the search for a chain ended.
 
     That several starts end in the same chain proves nothing: wide false minima are found again
@@ -24,7 +24,7 @@ class Verdict(StrEnum):
     @property
     def accepted(self) -> bool:
         """Whether the chain may be used."""
-        return self in (Verdict.ROUNDING, Verdict.CHI_SQUARE, Verdict.HELD_OUT)
+        return self in (FitStatus.ROUNDING, FitStatus.CHI_SQUARE, FitStatus.HELD_OUT)
 
 
 class NotAccepted(InputError):
@@ -32,13 +32,13 @@ class NotAccepted(InputError):
 
     Parameters
     ----------
-    verdict : Verdict
+    verdict : FitStatus
         Why it was not accepted.
     remark : str
         What is missing or speaks against it.
     """
 
-    def __init__(self, verdict: Verdict, remark: str) -> None:
+    def __init__(self, verdict: FitStatus, remark: str) -> None:
         self.verdict = verdict
         accepted = remark or "samples of a rigid arm"
         super().__init__("rigid chain", "fit", f"not accepted: {verdict}", accepted)

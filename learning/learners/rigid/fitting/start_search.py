@@ -15,7 +15,7 @@ from isotorque.learning.learners.rigid.fitting.chain_search import (
     best_of,
     search,
 )
-from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 
 
 class StartSearch:
@@ -73,12 +73,12 @@ class StartSearch:
             return SearchedChain(start, float(np.sum(rest**2)), whitening)
         return best_of(self.found)
 
-    def result(self, verdict: Verdict, found: SearchedChain, **more: Any) -> ChainFit:
+    def result(self, verdict: FitStatus, found: SearchedChain, **more: Any) -> ChainFit:
         """What is known of a minimum, with a verdict."""
         return fit_at(
             found.chain, self.samples, self.model, self.asked_gains, verdict, self.starts, **more
         )
 
-    def refused(self, verdict: Verdict, remark: str, **more: Any) -> ChainFit:
+    def refused(self, verdict: FitStatus, remark: str, **more: Any) -> ChainFit:
         """The best minimum, which is not accepted, and why."""
         return self.result(verdict, self.best(), remark=remark, **more)

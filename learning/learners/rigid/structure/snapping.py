@@ -17,7 +17,7 @@ from isotorque.learning.learners.rigid.fitting.chain_search import (
     SearchedChain,
     minimise,
 )
-from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.one_thread import one_thread
 from isotorque.learning.learners.rigid.planning.information import Information
 from isotorque.learning.learners.rigid.structure.canonical_form import RIGHT_ANGLE, CanonicalForm
@@ -138,10 +138,10 @@ class _Snapping:
         self._turns = np.ones(2 * n, dtype=bool)
         self._turns[2 * np.flatnonzero(fit.model.parents < 0)] = False
         self._levers = np.ones(2 * n, dtype=bool)
-        exact = fit.verdict is Verdict.ROUNDING
+        exact = fit.verdict is FitStatus.ROUNDING
         degrees = max(fit.degrees, 1)
         self._unit = 1.0
-        if fit.verdict is Verdict.HELD_OUT:
+        if fit.verdict is FitStatus.HELD_OUT:
             self._unit = fit.cost / degrees
             self._threshold = float(stats.f.isf(level, 1, degrees)) * self._unit
         else:
@@ -175,7 +175,7 @@ class _Snapping:
     def _p_value(self, cost: float, count: int) -> float:
         """Chance of a misfit that grows as much, if all hypotheses are true."""
         growth, count = max(cost - self._fit.cost, 0.0) / self._unit, max(count, 1)
-        if self._fit.verdict is Verdict.HELD_OUT:
+        if self._fit.verdict is FitStatus.HELD_OUT:
             return float(stats.f.sf(growth / count, count, max(self._fit.degrees, 1)))
         return float(stats.chi2.sf(growth, count))
 

@@ -121,7 +121,7 @@ def test_bad_or_contradicting_options_are_one_line(learn, options, words):
 
 
 @pytest.mark.slow
-def test_an_arm_that_hardly_holds_itself_is_led_to_a_lattice(tmp_path, capsys):
+def test_an_arm_that_hardly_holds_itself_is_guided_to_a_lattice(tmp_path, capsys):
     arguments = ["learn", "panda", "--out", str(tmp_path), "--samples", "255"]
     arguments += ["--json", "--quiet"]
     assert status(arguments) == 1  # what it holds does not show two relations

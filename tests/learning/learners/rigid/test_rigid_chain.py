@@ -11,7 +11,7 @@ import pytest
 from sklearn.base import clone
 
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
-from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus, NotAccepted
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
@@ -43,11 +43,11 @@ def test_it_knows_nothing_of_the_robot():
 def test_what_is_not_accepted_is_neither_predicted_nor_saved(tmp_path):
     _, q, torque = measured("panda", 3, 0)
     learner = RigidChain(max_starts=10).fit(q, torque)
-    assert learner.verdict_ is Verdict.TOO_FEW
+    assert learner.verdict_ is FitStatus.TOO_FEW
     for use in (learner.predict, learner.jacobian):
         with pytest.raises(NotAccepted, match=r"not accepted.*more poses") as refused:
             use(q)
-        assert refused.value.verdict is Verdict.TOO_FEW
+        assert refused.value.verdict is FitStatus.TOO_FEW
     with pytest.raises(InputError, match="not accepted"):
         save_model(SavedModel(learner, "panda", "", NAMES, {}), tmp_path)
     assert not list(tmp_path.iterdir())
@@ -176,7 +176,7 @@ def test_weights_and_clones():
     wrong[3] += 5.0
     weights = np.where(np.arange(12) == 3, 0.0, 1.0)
     learner = clone(RigidChain()).fit(q, wrong, weights)
-    assert learner.verdict_ is Verdict.ROUNDING
+    assert learner.verdict_ is FitStatus.ROUNDING
     assert np.abs(learner.predict(q) - gravity.torque(q)).max() < 1e-9
 
 

@@ -10,7 +10,7 @@ from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
 from isotorque.learning.learners.rigid.fitting.chain_parameters import serial
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
-from isotorque.learning.learners.rigid.fitting.fit_status import Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
 from isotorque.symbolic.gravity.gravity_model import GravityModel
@@ -74,7 +74,7 @@ def test_as_many_poses_as_promised(name, poses):
         q = random_poses(np.random.default_rng(seed), poses, gravity.n)
         torque = gravity.torque(q)
         fit = fitted(q, torque, seed=seed)
-        assert fit.verdict is Verdict.ROUNDING
+        assert fit.verdict is FitStatus.ROUNDING
         assert largest_error(fit, gravity.torque, gravity.n) < 1e-9 * np.abs(torque).max()
 
 
@@ -94,7 +94,7 @@ def test_unknown_gains_and_offsets(name, poses):
     gains, offsets = rng.uniform(0.5, 2.0, n), rng.normal(size=n)
     q = random_poses(rng, poses, n)
     fit = fitted(q, gains * gravity.torque(q) + offsets, free=True)
-    assert fit.verdict is Verdict.ROUNDING
+    assert fit.verdict is FitStatus.ROUNDING
 
     def measured(q):
         return gains * gravity.torque(q) + offsets
@@ -107,7 +107,7 @@ def test_a_tree_with_given_parents():
     chain = random_chain(np.random.default_rng(2), 5, parents=parents)
     q = random_poses(np.random.default_rng(3), 9, 5)
     fit = fitted(q, chain.torque(q), parents=parents)
-    assert fit.verdict is Verdict.ROUNDING
+    assert fit.verdict is FitStatus.ROUNDING
     assert largest_error(fit, chain.torque, 5) < 1e-8
 
 
@@ -132,7 +132,7 @@ def test_equal_poses_and_a_joint_that_never_moves_are_refused(noise):
     for q in (one, random_poses(rng, 30, 3) * [1, 0, 1] + [0, 0.3, 0]):
         torque = gravity.torque(q) + (0.05 * rng.normal(size=q.shape) if noise else 0.0)
         fit = fitted(q, torque, noise=noise, starts=30)
-        assert fit.verdict in (Verdict.TOO_FEW, Verdict.AMBIGUOUS)
+        assert fit.verdict in (FitStatus.TOO_FEW, FitStatus.AMBIGUOUS)
         assert "poses" in fit.remark
 
 
@@ -142,11 +142,11 @@ def test_noise_is_accepted_as_large_as_it_was_stated():
     q = random_poses(rng, 20, 7)
     torque = gravity.torque(q) + 0.1 * rng.normal(size=q.shape)
     fit = fitted(q, torque, noise=0.1)
-    assert fit.verdict is Verdict.CHI_SQUARE
+    assert fit.verdict is FitStatus.CHI_SQUARE
     assert fit.p_value > 1e-3
     assert largest_error(fit, gravity.torque, 7) < 0.5
     refused = fitted(q, torque, noise=0.02, starts=40)
-    assert refused.verdict is Verdict.MISFIT
+    assert refused.verdict is FitStatus.MISFIT
     assert "joint" in refused.remark
 
 
@@ -156,7 +156,7 @@ def test_unknown_noise_is_estimated_joint_by_joint():
     sizes = np.array([0.02, 0.3, 0.1, 0.05, 0.02, 0.02])
     q = random_poses(rng, 60, 6)
     fit = fitted(q, gravity.torque(q) + sizes * rng.normal(size=q.shape))
-    assert fit.verdict is Verdict.HELD_OUT
+    assert fit.verdict is FitStatus.HELD_OUT
     np.testing.assert_allclose(fit.samples.torque_noise, sizes, rtol=0.4)
 
 
@@ -171,7 +171,7 @@ def test_errors_of_angles_are_weighed():
         torque = gravity.torque(q) + 0.02 * rng.normal(size=q.shape)
         seen = q + angles * rng.normal(size=q.shape)
         fit = fitted(seen, torque, noise=0.02, angles=angles, seed=seed)
-        assert fit.verdict is Verdict.CHI_SQUARE
+        assert fit.verdict is FitStatus.CHI_SQUARE
         errors.append(largest_error(fit, gravity.torque, 7))
         naive.append(largest_error(fitted(seen, torque, seed=seed), gravity.torque, 7))
     assert np.median(errors) < 0.9 * np.median(naive)
@@ -190,7 +190,7 @@ def test_what_is_no_rigid_chain_is_not_accepted(spoil):
     else:
         torque = torque[:, [0, 2, 1, 3, 4, 5, 6]]
     fit = fitted(q, torque, noise=0.05, starts=30)
-    assert fit.verdict is Verdict.MISFIT
+    assert fit.verdict is FitStatus.MISFIT
 
 
 def test_one_seed_one_result():

@@ -1,4 +1,4 @@
-"""Folding points into a Dirichlet cell: the representative of an orbit and the way there."""
+"""Canonical representatives: the point of each orbit in a Dirichlet cell, and the way there."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SAME_COORDINATE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class FoldedPoints:
+class Representatives:
     """Representatives of m points in a fundamental domain.
 
     Attributes
@@ -55,8 +55,8 @@ class _Crossings:
     linear: Integers  # (f, r, r)
 
 
-class Folder:
-    """Folds points of R^r into the Dirichlet cell of a group modulo 2 pi.
+class CanonicalMap:
+    """Map of the points of R^r into the Dirichlet cell of a group modulo 2 pi.
 
     Parameters
     ----------
@@ -88,15 +88,15 @@ class Folder:
         self._to_basis = np.linalg.inv(cell.basis.astype(float)) / TURN
         self._facet_length = np.sqrt(np.einsum("fi,fi->f", cell.normals, cell.normals))
 
-    def fold(self, w: Floats) -> FoldedPoints:
-        """Fold the points ``w`` (m, r)."""
+    def representatives(self, w: Floats) -> Representatives:
+        """Find the representatives of the points ``w`` (m, r)."""
         m, r = w.shape
         element = np.full(m, self._identity)
         turns = -np.rint((w - self._cell.center) @ self._to_basis).astype(np.int64)
         turns = turns @ self._cell.basis
         point = w + TURN * turns
         if r == 0 or m == 0:
-            return FoldedPoints(point, element, turns, np.ones(m, dtype=bool))
+            return Representatives(point, element, turns, np.ones(m, dtype=bool))
         excess = self._excess(point)
         active = np.flatnonzero((excess > ON_FACET * self._facet_length).any(axis=1))
         while len(active):
@@ -118,7 +118,7 @@ class Folder:
                 w[edge], element[edge], turns[edge]
             )
             point[edge] = self._apply(w[edge], element[edge], turns[edge])
-        return FoldedPoints(point, element, turns, closed)
+        return Representatives(point, element, turns, closed)
 
     def _excess(self, point: Floats) -> Floats:
         return np.asarray(point @ self._cell.normals.T - self._cell.offsets)

@@ -1,4 +1,4 @@
-"""Configurations folded into the fundamental domain, with the signs of their torques."""
+"""Coordinates of the representatives of configurations, with the signs of their torques."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 Array = NDArray[np.float64]
 
 
-class CanonicalFold:
+class CanonicalCoordinates:
     """One representative per orbit: what is learned there answers everywhere.
 
     Parameters
@@ -29,7 +29,7 @@ class CanonicalFold:
     Notes
     -----
     Exactly equivariant in the interior of the domain and, as boundary points have one
-    representative too, everywhere. The folded map is continuous, but what a learner makes of it
+    representative too, everywhere. The coordinates are continuous, but what a learner makes of them
     need not be: across the faces of the domain the estimate may jump by its error there.
 
     Examples
@@ -39,7 +39,7 @@ class CanonicalFold:
     ...     basis=np.eye(1), A_sat=np.ones((2, 1, 1)), d_sat=np.array([[0.0], [np.pi]]),
     ...     Y=np.array([[1.0], [-1.0]]),
     ... )
-    >>> y, signs, _ = CanonicalFold(turn).fold(np.array([[0.5], [0.5 + np.pi]]))
+    >>> y, signs, _ = CanonicalCoordinates(turn).of(np.array([[0.5], [0.5 + np.pi]]))
     >>> bool(abs(y[0] - y[1]) < 1e-12), bool(signs[0] == -signs[1])
     (True, True)
     """
@@ -53,8 +53,8 @@ class CanonicalFold:
         """The fundamental domain."""
         return self._domain
 
-    def fold(self, q: Array) -> tuple[Array, Array, Array]:
-        """Fold configurations (m, n) [rad].
+    def of(self, q: Array) -> tuple[Array, Array, Array]:
+        """Find the representatives of configurations (m, n) [rad].
 
         Returns
         -------
@@ -65,9 +65,13 @@ class CanonicalFold:
         linear : (m, r, r) array
             Derivative of y by the coordinates of the configuration.
         """
-        folded = self._domain.fold(q)
-        y = (folded.q - self._domain.center) @ self._domain.basis.T
-        return y, self._group.Y[folded.relation], self._group.A_sat[folded.relation]
+        representatives = self._domain.representatives(q)
+        y = (representatives.q - self._domain.center) @ self._domain.basis.T
+        return (
+            y,
+            self._group.Y[representatives.relation],
+            self._group.A_sat[representatives.relation],
+        )
 
 
 def symmetry_group(group: GroupArrays) -> SymmetryGroup:
