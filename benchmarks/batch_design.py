@@ -80,9 +80,13 @@ class Bench:
         fit = self._learner(name).fit(*first)
         if name == "trigonometric":
             chosen = d_optimal(
-                self.group, candidates, more, noise=NOISE, potential=fit.fitted_potential(),
+                self.group,
+                candidates,
+                more,
+                noise=NOISE,
+                potential=fit.fitted_potential(),
                 known=first[0],
-            )  # fmt: skip
+            )
         else:
             chosen = least_variance(fit, candidates, more, noise=NOISE)
         both = [

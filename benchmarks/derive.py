@@ -106,8 +106,14 @@ def transform_potential(
         placement[:3, :3], placement[:3, 3] = tree.rotations[i], tree.translations[i]
         a = tree.axes[i]
         fixed, cross = np.outer(a, a), np.cross(np.eye(3), a)
-        rows = [[fixed[r, c] + (np.eye(3) - fixed)[r, c] * cos(q[i]) + cross[r, c] * sin(q[i])
-                 for c in range(3)] + [0] for r in range(3)]  # fmt: skip
+        rows = [
+            [
+                fixed[r, c] + (np.eye(3) - fixed)[r, c] * cos(q[i]) + cross[r, c] * sin(q[i])
+                for c in range(3)
+            ]
+            + [0]
+            for r in range(3)
+        ]
         local = matrix(placement.tolist()) @ matrix([*rows, [0, 0, 0, 1]])
         worlds.append(local if parent < 0 else worlds[parent] @ local)
         if tree.masses[i]:
@@ -232,8 +238,11 @@ def main() -> int:
         for subject in subjects(options.robots, Path(folder)):
             print(subject.name, file=sys.stderr)
             rows.append(measure(subject, options.repeats, options.limit))
-    for name, tree in (("2r parametric", planar_arm(2)), ("3r parametric", human_arm()),
-                       ("3r planar parametric", planar_arm(3))):  # fmt: skip
+    for name, tree in (
+        ("2r parametric", planar_arm(2)),
+        ("3r parametric", human_arm()),
+        ("3r planar parametric", planar_arm(3)),
+    ):
         if not options.robots:
             rows.append(measure_parametric(name, tree, options.repeats))
     print(json.dumps(rows, indent=1) if options.json else table(rows))

@@ -114,9 +114,15 @@ class Row:
 
 
 HEADS = (
-    "arm", "joints", "physics", "relations", "motions to find them", "torque RMSE [N m]",
-    "exit", "processor time [s]",
-)  # fmt: skip
+    "arm",
+    "joints",
+    "physics",
+    "relations",
+    "motions to find them",
+    "torque RMSE [N m]",
+    "exit",
+    "processor time [s]",
+)
 
 
 def subjects(folder: Path) -> Iterator[tuple[str, str]]:

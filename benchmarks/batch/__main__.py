@@ -192,12 +192,7 @@ def run(names: Sequence[str], seeds: int, noises: Sequence[float], quick: bool) 
     for name in names:
         if name not in SAMPLES:
             raise InputError("command line", "robots", name, ", ".join(SAMPLES))
-    return [
-        row
-        for noise in noises
-        for name in names
-        for row in measure(name, seeds, noise, quick)
-    ]  # fmt: skip
+    return [row for noise in noises for name in names for row in measure(name, seeds, noise, quick)]
 
 
 @clear_errors

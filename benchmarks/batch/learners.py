@@ -30,8 +30,12 @@ MOST_NOISY_SAMPLES = {"gaussian process": 260}
 MOST_JOINTS = {"network": 6, "network, augmented": 3, "network, canonical": 3}
 #: Learners compared with noise.
 WITH_NOISE = (
-    "network", "kernel ridge (scikit-learn)", "gaussian process", "trigonometric", "parametric",
-)  # fmt: skip
+    "network",
+    "kernel ridge (scikit-learn)",
+    "gaussian process",
+    "trigonometric",
+    "parametric",
+)
 #: Learners compared with learned symmetries.
 WITH_LEARNED = ("network", "gaussian process", "trigonometric")
 

@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 
 CONTAINS_TRUTH = ("trigonometric", "parametric")
-ERRORS = {
-    "2r": (0.1, 0.01, 0.001), "3r": (0.3, 0.03, 0.003), "ur5": (0.5, 0.05), "panda": (0.5,)
-}  # fmt: skip
+ERRORS = {"2r": (0.1, 0.01, 0.001), "3r": (0.3, 0.03, 0.003), "ur5": (0.5, 0.05), "panda": (0.5,)}
 SHARE = 0.01
 """Share of the largest torque that the worst joint's RMSE may have."""
 

@@ -140,9 +140,14 @@ def growth(x: ArrayLike, seconds: ArrayLike) -> Growth:
     rate, rate_error, start = _line(x, logs)
     factor = math.exp(rate)
     return Growth(
-        exponent, error, factor, factor * rate_error, float(x[0]), math.exp(constant),
+        exponent,
+        error,
+        factor,
+        factor * rate_error,
+        float(x[0]),
+        math.exp(constant),
         math.exp(start),
-    )  # fmt: skip
+    )
 
 
 def _line(x: Array, y: Array) -> tuple[float, float, float]:
@@ -205,10 +210,12 @@ def measure(
         seconds = [statistics.median(times[position, number]) for position in range(count)]
         found.append(
             Measured(
-                curve, np.array(curve.x[:count], dtype=float), np.array(seconds),
+                curve,
+                np.array(curve.x[:count], dtype=float),
+                np.array(seconds),
                 count < len(curve.x),
             )
-        )  # fmt: skip
+        )
     return found
 
 

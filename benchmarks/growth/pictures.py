@@ -79,9 +79,14 @@ def _draw(ax: Axes, one: Measured, number: int) -> None:
         fitted = found.seconds(x, bool(one.curve.per))
         ax.plot(x, fitted, color=colour, linewidth=2.6, alpha=0.45, linestyle=(0, (1, 1)))
     ax.plot(
-        one.x, one.seconds, color=colour, marker=MARKERS[number % len(MARKERS)], markersize=4.0,
-        linewidth=0.9, label=label,
-    )  # fmt: skip
+        one.x,
+        one.seconds,
+        color=colour,
+        marker=MARKERS[number % len(MARKERS)],
+        markersize=4.0,
+        linewidth=0.9,
+        label=label,
+    )
 
 
 def _finish(ax: Axes, quantity: str, kind: str, group: Sequence[Measured]) -> None:

@@ -33,8 +33,11 @@ BLOCK = 100
 LEARNED = {"LocalLinearMap": 10_000}
 """Samples learned before queries are answered; 100 by default."""
 FEW_STEPS: dict[str, Any] = {
-    "restarts": 1, "trial_iterations": 10, "iterations": 20, "tolerance": 1e-300,
-}  # fmt: skip
+    "restarts": 1,
+    "trial_iterations": 10,
+    "iterations": 20,
+    "tolerance": 1e-300,
+}
 """The network always takes 30 steps: how many are needed depends on the samples' luck."""
 MOST_LEARNED = {
     "SymmetricGaussianProcess": 1000,

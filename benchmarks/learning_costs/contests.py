@@ -125,14 +125,15 @@ def update_contest(bench: Bench, known: int) -> list[Contestant]:
         stimuli(*sample)
         network.partial_fit(*sample)
         features.partial_fit(*sample)
-    errors = {
-        id(x): bench.rmse(x) for x in (printed, iterated, squares, network, features)
-    }  # fmt: skip
+    errors = {id(x): bench.rmse(x) for x in (printed, iterated, squares, network, features)}
 
     def contestant(
-        name: str, learn: Callable[[Array, Array], Any], learner: Any = None,
-        beside: tuple[str, ...] = (), chunk: int = 20,
-    ) -> Contestant:  # fmt: skip
+        name: str,
+        learn: Callable[[Array, Array], Any],
+        learner: Any = None,
+        beside: tuple[str, ...] = (),
+        chunk: int = 20,
+    ) -> Contestant:
         samples = cycle(zip(more[0][:, None], more[1][:, None], strict=True))
 
         def run() -> float:
@@ -144,7 +145,8 @@ def update_contest(bench: Bench, known: int) -> list[Contestant]:
     return [
         contestant("LLM", printed.partial_fit, printed),
         Contestant(
-            "LLM, one call", lambda: per_item(lambda: at_once.partial_fit(*more), MORE),
+            "LLM, one call",
+            lambda: per_item(lambda: at_once.partial_fit(*more), MORE),
             error=lambda: errors[id(printed)],
         ),
         contestant("LLM_it", iterated.partial_fit, iterated, chunk=1),
@@ -154,7 +156,7 @@ def update_contest(bench: Bench, known: int) -> list[Contestant]:
         contestant("literal LLM, arrays", arrays.partial_fit, printed, ours[:1], 1),
         contestant("MLPRegressor.partial_fit", network.partial_fit, network, ours),
         contestant("SGDRegressor on RBFSampler", features.partial_fit, features, ours),
-    ]  # fmt: skip
+    ]
 
 
 def check_literal(learner: LocalLinearMap, start: Samples, more: Samples, q: Array) -> None:
@@ -187,12 +189,10 @@ def prediction_contests(bench: Bench, known: int, count: int) -> dict[str, list[
         "gaussian-process": (process, ()),
         "trigonometric": (waves, ()),
         "literal LLM, arrays": (ArrayMap.like(printed), ("LLM",)),
-        "MLPRegressor": (
-            multilayer(bench.group, network.hidden).fit(*samples), ("network",)
-        ),
+        "MLPRegressor": (multilayer(bench.group, network.hidden).fit(*samples), ("network",)),
         "KernelRidge": (kernel_ridge(bench.group).fit(*samples), kernels),
         "GaussianProcessRegressor": (peers.gaussian_process(bench.group).fit(*samples), kernels),
-    }  # fmt: skip
+    }
     ways: dict[str, list[Contestant]] = {"one at a time": [], f"{TEST} in one call": []}
     single = [q[None] for q in bench.q[:SINGLE]]
 
@@ -202,16 +202,18 @@ def prediction_contests(bench: Bench, known: int, count: int) -> dict[str, list[
             entries.append(Contestant(name, run, beside, lambda: error))
 
     for name, (learner, beside) in learners.items():
-        works = (partial(one_by_one, learner.predict, single), SINGLE), (
-            partial(learner.predict, bench.q), TEST
-        )  # fmt: skip
+        works = (
+            (partial(one_by_one, learner.predict, single), SINGLE),
+            (partial(learner.predict, bench.q), TEST),
+        )
         enter(name, beside, works, bench.rmse(learner))
     gravity = partial(
         pin.computeGeneralizedGravity, bench.robot.model, bench.robot.model.createData()
     )
-    works = (partial(one_by_one, gravity, list(bench.q[:SINGLE])), SINGLE), (
-        partial(one_by_one, gravity, list(bench.q)), TEST
-    )  # fmt: skip
+    works = (
+        (partial(one_by_one, gravity, list(bench.q[:SINGLE])), SINGLE),
+        (partial(one_by_one, gravity, list(bench.q)), TEST),
+    )
     enter("Pinocchio", ("LLM", "trigonometric"), works, 0.0)
     return ways
 
@@ -233,9 +235,7 @@ def fit_contest(bench: Bench, count: int) -> list[Contestant]:
         def run() -> float:
             return per_item(lambda: fitted.append(make().fit(*samples)), 1)
 
-        return Contestant(
-            name, run, beside, lambda: bench.rmse(fitted[-1]) if fitted else None
-        )  # fmt: skip
+        return Contestant(name, run, beside, lambda: bench.rmse(fitted[-1]) if fitted else None)
 
     def ours(name: str) -> Contestant:
         return contestant(name, lambda: learner_by_name(name, bench.group, task))
@@ -243,15 +243,15 @@ def fit_contest(bench: Bench, count: int) -> list[Contestant]:
     hidden = learner_by_name("network", bench.group, task).hidden
     return [
         *map(ours, ("network", "gaussian-process", "trigonometric", "parametric")),
+        contestant("MLPRegressor", lambda: multilayer(bench.group, hidden), ("network",)),
         contestant(
-            "MLPRegressor", lambda: multilayer(bench.group, hidden), ("network",)
-        ),
-        contestant(
-            "GaussianProcessRegressor", lambda: peers.gaussian_process(bench.group),
+            "GaussianProcessRegressor",
+            lambda: peers.gaussian_process(bench.group),
             ("gaussian-process",),
         ),
         contestant(
-            "LinearRegression", lambda: peers.linear_regression(bench.group),
+            "LinearRegression",
+            lambda: peers.linear_regression(bench.group),
             ("trigonometric", "parametric"),
         ),
-    ]  # fmt: skip
+    ]

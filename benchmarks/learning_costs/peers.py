@@ -65,9 +65,12 @@ class OnlineCircles(RegressorMixin, BaseEstimator):
 def online_network(group: SymmetryGroup, scale: Array) -> Any:
     """MLPRegressor, one step of Adam for a sample and its copies; settings the best of six."""
     network = MLPRegressor(
-        hidden_layer_sizes=(100,), activation="tanh", learning_rate_init=3e-3, alpha=1e-9,
+        hidden_layer_sizes=(100,),
+        activation="tanh",
+        learning_rate_init=3e-3,
+        alpha=1e-9,
         random_state=0,
-    )  # fmt: skip
+    )
     return SymmetricSamples(OnlineCircles(network, scale), group)
 
 

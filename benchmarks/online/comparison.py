@@ -46,31 +46,41 @@ def comparison_rows(options: argparse.Namespace) -> Iterator[Row]:
     )
     shares = _shares(runs)
     yield Row(
-        "2R, inadmissible torques among 1,000 commands after discovery", "avoided", "under 1 %",
-        "", spread(shares, " %", 1) + f", {len(runs)} seeds", statistics.median(shares), 1.0, WHY,
-    )  # fmt: skip
+        "2R, inadmissible torques among 1,000 commands after discovery",
+        "avoided",
+        "under 1 %",
+        "",
+        spread(shares, " %", 1) + f", {len(runs)} seeds",
+        statistics.median(shares),
+        1.0,
+        WHY,
+    )
     limits = truth.robot.limits
     goals = truth.sets["90"]
     ways: tuple[tuple[str, str, Callable[[int], Run]], ...] = (
         (
-            "constrained direction sampling", "-",
+            "constrained direction sampling",
+            "-",
             lambda seed: scheme_run(truth, replayed, QUICK, PLAN, seed),
         ),
         ("constrained goal babbling, goals in the BCTS", "-", lambda s: _goals_run(truth, s)),
         (
-            "direction sampling without constraints (Fig. 7)", "47-82 %",
+            "direction sampling without constraints (Fig. 7)",
+            "47-82 %",
             lambda seed: _free_run(truth, seed, DirectionSampling),
         ),
         (
-            "direction sampling within the joint limits", "-",
+            "direction sampling within the joint limits",
+            "-",
             lambda seed: _free_run(truth, seed, DirectionSampling, domain=JointBox(limits)),
         ),
         (
-            "goal babbling, the 90 targets as goals", "-",
+            "goal babbling, the 90 targets as goals",
+            "-",
             lambda seed: _free_run(truth, seed, GoalBabbling, goals=goals),
         ),
         ("motor babbling", "-", lambda seed: _free_run(truth, seed, MotorBabbling)),
-    )  # fmt: skip
+    )
     for what, demanded, run in ways:
         runs = all_seeds(options.store, f"1000-{what}", options.few_seeds, run)
         here = (
@@ -89,9 +99,13 @@ def _free_run(truth: Truth, seed: int, kind: Callable[..., Exploration], **optio
     """An unconstrained original: every torque is applied, whatever happened is learned."""
     learner = replayed(truth.group)
     exploration = kind(
-        SimulatedArm(truth.robot), learner, np.random.default_rng(seed),
-        torque_range=truth.torque_range, settings=FREE, **options,
-    )  # fmt: skip
+        SimulatedArm(truth.robot),
+        learner,
+        np.random.default_rng(seed),
+        torque_range=truth.torque_range,
+        settings=FREE,
+        **options,
+    )
     return explored(truth, exploration, learner, PLAN)
 
 
@@ -108,7 +122,13 @@ def _goals_run(truth: Truth, seed: int) -> Run:
     assert isinstance(domain, FundamentalDomain)
     learner = replayed(scheme.group)
     exploration = ConstrainedGoalBabbling(
-        arm, learner, rng, domain.sample(rng, 66), static_torques=scheme.static_torques,
-        domain=domain, torque_range=scheme.torque_range, settings=QUICK,
-    )  # fmt: skip
+        arm,
+        learner,
+        rng,
+        domain.sample(rng, 66),
+        static_torques=scheme.static_torques,
+        domain=domain,
+        torque_range=scheme.torque_range,
+        settings=QUICK,
+    )
     return explored(truth, exploration, learner, PLAN)

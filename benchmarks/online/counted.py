@@ -39,10 +39,16 @@ def two_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
     )
     for name in plan.sets:
         yield _row(
-            f"2R, LLM with kappa and replay: samples to {FINE} Nm, {name}", "3,000", 2000,
-            "1,000", runs, name, FINE, why=FRINGE_2R,
+            f"2R, LLM with kappa and replay: samples to {FINE} Nm, {name}",
+            "3,000",
+            2000,
+            "1,000",
+            runs,
+            name,
+            FINE,
+            why=FRINGE_2R,
             note=f", {100 * statistics.median(run.failed for run in runs):.1f} % of torques failed",
-        )  # fmt: skip
+        )
     plan = Plan(300, 5, ("dense",))
     runs = all_seeds(
         options.store,
@@ -52,9 +58,15 @@ def two_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
     )
     found = statistics.median(run.discovery for run in runs)
     yield _row(
-        f"2R, joint least squares: samples to {FINE} Nm, dense, learned symmetries", "-", 120,
-        "50", runs, "dense", FINE, note=f", after {found:.0f} of discovery",
-    )  # fmt: skip
+        f"2R, joint least squares: samples to {FINE} Nm, dense, learned symmetries",
+        "-",
+        120,
+        "50",
+        runs,
+        "dense",
+        FINE,
+        note=f", after {found:.0f} of discovery",
+    )
 
 
 def three_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
@@ -68,9 +80,14 @@ def three_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
         lambda seed: scheme_run(truth, replayed_3r, WIDE, plan, seed),
     )
     yield _row(
-        f"3R, LLM with kappa and replay: samples to {COARSE_3R} Nm, stable part", "14,000", 1500,
-        "300", runs, "stable", COARSE_3R,
-    )  # fmt: skip
+        f"3R, LLM with kappa and replay: samples to {COARSE_3R} Nm, stable part",
+        "14,000",
+        1500,
+        "300",
+        runs,
+        "stable",
+        COARSE_3R,
+    )
     plan = Plan(1000, 20, ("stable",))
     runs = all_seeds(
         options.store,
@@ -80,9 +97,15 @@ def three_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
     )
     for threshold, demanded, stretch in ((COARSE_3R, 200, "60"), (FINE_3R, 400, "150")):
         yield _row(
-            f"3R, joint least squares, open loop: samples to {threshold} Nm, stable part", "-",
-            demanded, stretch, runs, "stable", threshold, why=FRINGE_3R,
-        )  # fmt: skip
+            f"3R, joint least squares, open loop: samples to {threshold} Nm, stable part",
+            "-",
+            demanded,
+            stretch,
+            runs,
+            "stable",
+            threshold,
+            why=FRINGE_3R,
+        )
     plan = Plan(400, 10, ("dense",))
     guided = all_seeds(
         options.store,
@@ -92,15 +115,28 @@ def three_joint_rows(options: argparse.Namespace) -> Iterator[Row]:
     )
     for threshold, demanded, stretch in ((COARSE_3R, 200, "60"), (FINE_3R, 400, "150")):
         yield _row(
-            f"3R, joint least squares, guided: samples to {threshold} Nm, dense", "-", demanded,
-            stretch, guided, "dense", threshold,
-        )  # fmt: skip
+            f"3R, joint least squares, guided: samples to {threshold} Nm, dense",
+            "-",
+            demanded,
+            stretch,
+            guided,
+            "dense",
+            threshold,
+        )
 
 
 def _row(
-    what: str, paper: str, demanded: float, stretch: str, runs: list[Run], name: str,
-    threshold: float, *, note: str = "", why: str = "",
-) -> Row:  # fmt: skip
+    what: str,
+    paper: str,
+    demanded: float,
+    stretch: str,
+    runs: list[Run],
+    name: str,
+    threshold: float,
+    *,
+    note: str = "",
+    why: str = "",
+) -> Row:
     counts = [run.reached(name, threshold) for run in runs]
     here = spread(counts, "", 0) + f", {len(runs)} seeds" + note
     last = statistics.median(run.last(name) for run in runs)

@@ -24,9 +24,11 @@ def literal_rows(options: argparse.Namespace) -> Iterator[Row]:
     truth = Truth.of("2r")
     plan = Plan(54_000, 18_000, SETS)
     runs = all_seeds(
-        options.store, "literal", options.long_seeds,
+        options.store,
+        "literal",
+        options.long_seeds,
         lambda seed: scheme_run(truth, literal, LITERAL, plan, seed, bold=True),
-    )  # fmt: skip
+    )
     yield from _rows(runs, "at 54,000 samples", "0.0053 Nm", 0.0061)
 
 
@@ -58,6 +60,12 @@ def _rows(runs: list[Run], when: str, paper: str, limit: float) -> Iterator[Row]
     for name in SETS:
         errors = last_errors(runs, name)
         yield Row(
-            f"2R, literal LLM {when}, {name}", paper, f"at most {limit:g} Nm", "",
-            spread(errors, " Nm", 4) + seeds, statistics.median(errors), limit, WHY,
-        )  # fmt: skip
+            f"2R, literal LLM {when}, {name}",
+            paper,
+            f"at most {limit:g} Nm",
+            "",
+            spread(errors, " Nm", 4) + seeds,
+            statistics.median(errors),
+            limit,
+            WHY,
+        )

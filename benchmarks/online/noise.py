@@ -54,10 +54,12 @@ def noise_rows(options: argparse.Namespace) -> Iterator[Row]:
         found, bound = errors[samples], statistics.median(bounds[samples])
         yield Row(
             f"2R, noise of 0.1 deg and 0.01 Nm: joint least squares, {samples} samples, dense",
-            "-", "-", "",
+            "-",
+            "-",
+            "",
             f"{spread(found, ' Nm', 4)}, {len(found)} seeds; Cramer-Rao bound {bound:.4f} Nm, "
             f"{statistics.median(found) / bound:.1f} times it",
-        )  # fmt: skip
+        )
 
 
 def _noisy_run(truth: Truth, plan: Plan, seed: int) -> tuple[Run, np.ndarray]:

@@ -34,8 +34,13 @@ def speed_rows(options: argparse.Namespace) -> Iterator[Row]:
         copies = len(truth.group)
         yield Row(
             f"{name.upper()}, update of the LLM, all {copies} copies, {few} prototypes",
-            paper, f"{demanded:.0f} us", stretch, f"{cost:.1f} us", cost, demanded,
-        )  # fmt: skip
+            paper,
+            f"{demanded:.0f} us",
+            stretch,
+            f"{cost:.1f} us",
+            cost,
+            demanded,
+        )
         exact = joint(truth.group)
         start = time.process_time()
         for i in range(400):
@@ -44,8 +49,13 @@ def speed_rows(options: argparse.Namespace) -> Iterator[Row]:
         cost = 1e3 * (time.process_time() - start) / 400
         yield Row(
             f"{name.upper()}, update and prediction of joint least squares, amortised",
-            "-", "1 ms", "", f"{cost:.2f} ms", cost, 1.0,
-        )  # fmt: skip
+            "-",
+            "1 ms",
+            "",
+            f"{cost:.2f} ms",
+            cost,
+            1.0,
+        )
 
 
 def _best_time(work: Callable[[], Any]) -> float:

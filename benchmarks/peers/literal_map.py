@@ -61,9 +61,13 @@ class LiteralMap:
             raise ValueError("Eq. 17-22 have a number of inner iterations, and no replay")
         used = SymmetryCoordinates.of(learner.group, learner.n_features_in_)
         made = cls(
-            learner.radius, learner.learning_rate, learner.kernel_width, steps,
-            distance=used.isometry, group=used,
-        )  # fmt: skip
+            learner.radius,
+            learner.learning_rate,
+            learner.kernel_width,
+            steps,
+            distance=used.isometry,
+            group=used,
+        )
         for known in zip(learner.prototypes_, learner.offsets_, learner.slopes_, strict=True):
             made.insert(*known)
         return made

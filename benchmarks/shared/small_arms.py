@@ -221,7 +221,7 @@ SMALL_ARMS: dict[str, SmallArm] = {
         "one joint, limits above the horizontal alone: no pose it can hold by itself",
         (_j("-y", (0, 0, 0.1), 0.3, 1.2, 10, 1.0, (0.1, 0, 0)),),
     ),
-}  # fmt: skip
+}
 
 
 def write_arm(name: str, folder: Path) -> Path:

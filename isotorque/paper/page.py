@@ -123,7 +123,7 @@ def render_page(comparison: Comparison, pictures: list[Picture]) -> str:
             }
             for picture in pictures
         ],
-    )  # fmt: skip
+    )
 
 
 def command(options: PaperOptions) -> str:

@@ -30,9 +30,19 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str, int, int, str], None]
 COLUMNS = (
-    "robot", "learner", "strategy", "symmetries", "seed", "samples", "rmse", "largest", "explored",
-    "motions", "inadmissible", "gate",
-)  # fmt: skip
+    "robot",
+    "learner",
+    "strategy",
+    "symmetries",
+    "seed",
+    "samples",
+    "rmse",
+    "largest",
+    "explored",
+    "motions",
+    "inadmissible",
+    "gate",
+)
 
 
 @dataclass(frozen=True)
@@ -89,9 +99,13 @@ def _silent(stage: str, done: int, total: int, note: str) -> None:
 
 
 def sweep(
-    runs: Sequence[SweepRun], out: Path, progress: Progress, *, jobs: int = 2,
+    runs: Sequence[SweepRun],
+    out: Path,
+    progress: Progress,
+    *,
+    jobs: int = 2,
     scheduler: str | None = None,
-) -> SweepResult:  # fmt: skip
+) -> SweepResult:
     """Do all runs that are not done yet, and write their table and plot.
 
     Parameters

@@ -173,9 +173,19 @@ class Exploration:
         self.home = home
         self._learn(outcome, 1.0)
         return ExplorationStep(
-            0, Phase.START, home, outcome.torque, False, outcome, True, 1.0, np.nan, False,
-            self._share(), self._end_of_window(),
-        )  # fmt: skip
+            0,
+            Phase.START,
+            home,
+            outcome.torque,
+            False,
+            outcome,
+            True,
+            1.0,
+            np.nan,
+            False,
+            self._share(),
+            self._end_of_window(),
+        )
 
     def _step(self, home: Vector) -> ExplorationStep:
         target, torque = self._command(home)
@@ -206,10 +216,19 @@ class Exploration:
             self._previous = np.asarray(self._arm.q, dtype=float)
             self._restart(self._previous)
         return ExplorationStep(
-            number, target.phase if target is not None else Phase.MOTOR,
-            target.q if target is not None else None, torque, projected, outcome, learned, weight,
-            alpha, turned, self._share(), self._end_of_window(),
-        )  # fmt: skip
+            number,
+            target.phase if target is not None else Phase.MOTOR,
+            target.q if target is not None else None,
+            torque,
+            projected,
+            outcome,
+            learned,
+            weight,
+            alpha,
+            turned,
+            self._share(),
+            self._end_of_window(),
+        )
 
     def _judge(self, target: Target | None, q: Vector) -> tuple[float, float, bool]:
         """Weight (Eq. 16), alpha (Eq. 15) and whether the direction was lost.

@@ -73,9 +73,16 @@ class ConstrainedDirectionSampling(Exploration):
         explored: ExploredShare | None = None,
     ) -> None:
         super().__init__(
-            arm, learner, rng, torque_range=torque_range, home_torque=home_torque,
-            static_torques=static_torques, domain=domain, settings=settings, explored=explored,
-        )  # fmt: skip
+            arm,
+            learner,
+            rng,
+            torque_range=torque_range,
+            home_torque=home_torque,
+            static_torques=static_torques,
+            domain=domain,
+            settings=settings,
+            explored=explored,
+        )
 
     def _make_targets(self, home: Vector) -> TargetSource:
         return _direction_targets(self, home)
@@ -125,9 +132,14 @@ class GuidedDirectionSampling(Exploration):
         explored: ExploredShare | None = None,
     ) -> None:
         super().__init__(
-            arm, learner, rng, torque_range=torque_range, domain=domain, settings=settings,
+            arm,
+            learner,
+            rng,
+            torque_range=torque_range,
+            domain=domain,
+            settings=settings,
             explored=explored,
-        )  # fmt: skip
+        )
         self._guided = arm
 
     def _make_targets(self, home: Vector) -> TargetSource:

@@ -8,9 +8,19 @@ from benchmarks.shared.document import write_between
 
 def row(learner, symmetries, samples, error, noise=0.0):
     return Row(
-        "2r", learner, symmetries, samples, noise, [error, error], {"66": error}, error / 25.0,
-        0.1, 8.0, None, None,
-    )  # fmt: skip
+        "2r",
+        learner,
+        symmetries,
+        samples,
+        noise,
+        [error, error],
+        {"66": error},
+        error / 25.0,
+        0.1,
+        8.0,
+        None,
+        None,
+    )
 
 
 ROWS = [

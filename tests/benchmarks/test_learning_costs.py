@@ -26,9 +26,12 @@ def test_the_literal_map_predicts_as_ours(kind, robot, grouped):
     """All responsibilities count (cutoff 6.5), so predictions differ by rounding alone."""
     bench = Bench(robot)
     ours = LocalLinearMap(
-        0.3, learning_rate=0.4, inner_iterations=2, cutoff=6.5,
+        0.3,
+        learning_rate=0.4,
+        inner_iterations=2,
+        cutoff=6.5,
         group=bench.group if grouped else None,
-    )  # fmt: skip
+    )
     q, torque = bench.random(15, 5)
     ours.fit(q[:1], torque[:1])
     literal = kind.like(ours)  # with one prototype
@@ -165,8 +168,10 @@ def test_three_tables_are_printed(short, options, monkeypatch, capsys):
         return
     lines = text.splitlines()
     assert [line for line in lines if line.startswith("#")] == [
-        "### Updates", "### Predictions", "### Batch fits",
-    ]  # fmt: skip
+        "### Updates",
+        "### Predictions",
+        "### Batch fits",
+    ]
     rows = [line for line in lines if line.startswith("| 2r (8) | ")]
     assert len(rows) == 9 + 10 + 7
     widths = [line.count("|") for line in lines if line.startswith("|")]

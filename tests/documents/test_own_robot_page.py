@@ -50,8 +50,8 @@ def test_the_rows_shown_are_a_recording_of_the_2r_arm(tmp_path):
 
 
 def test_the_python_example_runs(arm):
-    assert status(["learn", "2r", "--data", "arm.csv", "--out", "out/b", "--quiet",
-                   "--learner", "parametric", "--symmetries", "none"]) == 0  # fmt: skip
+    learn = "learn 2r --data arm.csv --out out/b --quiet --learner parametric --symmetries none"
+    assert status(learn.split()) == 0
     code = re.findall(r"```python\n(.*?)```", PAGE, re.S)[-1]
     names: dict = {}
     exec(code, names)

@@ -39,8 +39,10 @@ def arm_models(
             while allowed[-1] > 0:
                 allowed.append(parents[allowed[-1] - 1])
         parents.append(draw(st.sampled_from(allowed)))
-    kinds = [draw(st.sampled_from(["revolute", "prismatic"])) if prismatic else "revolute"
-             for _ in range(n)]  # fmt: skip
+    kinds = [
+        draw(st.sampled_from(["revolute", "prismatic"])) if prismatic else "revolute"
+        for _ in range(n)
+    ]
     seed = draw(st.integers(0, 2**32 - 1))
     return build_arm(parents, kinds, np.random.default_rng(seed), armature)
 

@@ -54,11 +54,17 @@ def judge_symmetries(
     group = primary_symmetries(gravity.potential) if truth is None else truth
     entries = [
         _judged(
-            number, entry.relation, group, gravity, tolerance,
-            known=str(entry.known), standard_error=entry.standard_error, support=entry.support,
+            number,
+            entry.relation,
+            group,
+            gravity,
+            tolerance,
+            known=str(entry.known),
+            standard_error=entry.standard_error,
+            support=entry.support,
         )
         for number, entry in enumerate(learned.relations, 1)
-    ]  # fmt: skip
+    ]
     return SymmetryReport(group, tuple(entries), learned.method, learned.missing or "")
 
 

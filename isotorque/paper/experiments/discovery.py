@@ -31,14 +31,16 @@ def measure_discovery(robot: Robot, seed: int, effort: Effort) -> Measured:
     gravity = GravityModel(robot)
     group = primary_symmetries(gravity.potential)
     scheme = Scheme(
-        SimulatedArm(robot), np.random.default_rng(seed), literal,
+        SimulatedArm(robot),
+        np.random.default_rng(seed),
+        literal,
         SchemeSettings(
             discovery=DiscoverySettings(
                 profiles_per_torque=effort.of(PROFILES, 4), patience=effort.of(PROFILES, 4)
             ),
             n_min=group.order,
         ),
-    )  # fmt: skip
+    )
     motions = list(scheme.discover())
     summary = summarise_discovery(motions, scheme.gates, group.order)
     potential = gravity.potential.to_float()

@@ -120,9 +120,14 @@ class LearningRun:
 
 
 def open_loop_run(
-    robot: Robot, make: LearnerFactory, settings: ExplorationSettings, samples: int, seed: int,
-    every: Callable[[int], int], n_min: int | None = None,
-) -> LearningRun:  # fmt: skip
+    robot: Robot,
+    make: LearnerFactory,
+    settings: ExplorationSettings,
+    samples: int,
+    seed: int,
+    every: Callable[[int], int],
+    n_min: int | None = None,
+) -> LearningRun:
     """Discover symmetries, then explore and learn: Fig. 8 on an arm without controller.
 
     Parameters
@@ -146,11 +151,11 @@ def open_loop_run(
     run = _new_run(robot)
     needed = run.group.order if n_min is None else n_min
     scheme = Scheme(
-        SimulatedArm(robot), np.random.default_rng(seed), make,
-        SchemeSettings(
-            samples=samples, exploration=settings, n_min=needed, from_trajectories=True
-        ),
-    )  # fmt: skip
+        SimulatedArm(robot),
+        np.random.default_rng(seed),
+        make,
+        SchemeSettings(samples=samples, exploration=settings, n_min=needed, from_trajectories=True),
+    )
     run.motions = list(scheme.discover())
     steps = scheme.learn()
     first = next(steps)
@@ -161,9 +166,13 @@ def open_loop_run(
 
 
 def guided_run(
-    robot: Robot, make: LearnerFactory, settings: ExplorationSettings, samples: int, seed: int,
+    robot: Robot,
+    make: LearnerFactory,
+    settings: ExplorationSettings,
+    samples: int,
+    seed: int,
     every: Callable[[int], int],
-) -> LearningRun:  # fmt: skip
+) -> LearningRun:
     """Explore with an arm that is guided to each target and held; exact symmetries.
 
     Parameters are those of `open_loop_run`.
@@ -174,9 +183,13 @@ def guided_run(
     run.learner = make(run.group, torques)
     run.domain = FundamentalDomain.near(run.group, arm.q)
     exploration = GuidedDirectionSampling(
-        arm, run.learner, np.random.default_rng(seed), domain=run.domain, torque_range=torques,
+        arm,
+        run.learner,
+        np.random.default_rng(seed),
+        domain=run.domain,
+        torque_range=torques,
         settings=settings,
-    )  # fmt: skip
+    )
     _follow(run, exploration, exploration.steps(samples), every)
     return run
 
@@ -193,9 +206,11 @@ def _after(first: ExplorationStep, rest: Iterator[ExplorationStep]) -> Iterator[
 
 
 def _follow(
-    run: LearningRun, exploration: Exploration, steps: Iterator[ExplorationStep],
+    run: LearningRun,
+    exploration: Exploration,
+    steps: Iterator[ExplorationStep],
     every: Callable[[int], int],
-) -> None:  # fmt: skip
+) -> None:
     evaluate_at = every(0)
     settled = 0
     share: float | None = None

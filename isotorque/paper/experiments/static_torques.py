@@ -74,23 +74,35 @@ def measure_static_torques(robot: Robot, seed: int, effort: Effort) -> Measured:
 
     constrained = iterated(known, torques)
     babbling = ConstrainedGoalBabbling(
-        SimulatedArm(robot), constrained, np.random.default_rng(seed), goals,
-        static_torques=discovered().static_torques, domain=domain, torque_range=torques,
+        SimulatedArm(robot),
+        constrained,
+        np.random.default_rng(seed),
+        goals,
+        static_torques=discovered().static_torques,
+        domain=domain,
+        torque_range=torques,
         settings=STEPS,
-    )  # fmt: skip
+    )
     count("constrained_babbling", babbling, constrained, babbling.steps(commands))
 
     free = iterated(known, torques)
     original = GoalBabbling(
-        SimulatedArm(robot), free, np.random.default_rng(seed), goals, torque_range=torques,
+        SimulatedArm(robot),
+        free,
+        np.random.default_rng(seed),
+        goals,
+        torque_range=torques,
         settings=PLAIN,
-    )  # fmt: skip
+    )
     count("babbling", original, free, original.steps(commands))
 
     free = iterated(known, torques)
     sampling = DirectionSampling(
-        SimulatedArm(robot), free, np.random.default_rng(seed), torque_range=torques,
+        SimulatedArm(robot),
+        free,
+        np.random.default_rng(seed),
+        torque_range=torques,
         settings=PLAIN,
-    )  # fmt: skip
+    )
     count("sampling", sampling, free, sampling.steps(commands))
     return Measured(numbers, pictures)

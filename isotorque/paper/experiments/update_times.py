@@ -34,8 +34,10 @@ def measure_update_times(robot: Robot, seed: int, effort: Effort) -> Measured:
     q = np.cumsum(rng.normal(0.0, 0.1, (grown + count * SAMPLES_PER_ITERATION, robot.n)), axis=0)
     torque = gravity.torque(q)
     makers: dict[str, LearnerFactory] = {
-        "plain": literal, "printed": literal_iterated, "iterated": iterated,
-    }  # fmt: skip
+        "plain": literal,
+        "printed": literal_iterated,
+        "iterated": iterated,
+    }
     learners: dict[str, LocalLinearMap] = {}
     for name, make in makers.items():
         learners[name] = make(group, np.abs(torque).max(axis=0))  # type: ignore[assignment]

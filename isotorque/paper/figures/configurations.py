@@ -28,57 +28,74 @@ def symmetry_pictures(data: Data) -> Iterator[Picture]:
     stable = np.array(data["stable"], dtype=bool)
     torque = ", ".join(f"{x:.3g}" for x in data["torque"])
     yield Picture(
-        "fig1", "2r", f"Many to one: {len(q)} configurations need the torque ±({torque}) N m, "
-        "signs apart.", many_to_one(q, np.array(data["torques"])), wide=True,
-    )  # fmt: skip
+        "fig1",
+        "2r",
+        f"Many to one: {len(q)} configurations need the torque ±({torque}) N m, signs apart.",
+        many_to_one(q, np.array(data["torques"])),
+        wide=True,
+    )
     yield Picture(
-        "fig2a", "2r", "Symmetric configurations in primary sets. Solid: stable, dashed: unstable.",
-        stick_figure(np.array(data["links"]), sets, stable=stable), wide=True,
-    )  # fmt: skip
+        "fig2a",
+        "2r",
+        "Symmetric configurations in primary sets. Solid: stable, dashed: unstable.",
+        stick_figure(np.array(data["links"]), sets, stable=stable),
+        wide=True,
+    )
     curves = [(int(c["joint"]), int(c["sign"]), np.array(c["points"])) for c in data["curves"]]
     labels = [str(1 + int(np.sum(sets[:i] == sets[i]))) for i in range(len(sets))]
     yield Picture(
-        "fig2b", "2r", "Component-wise level sets (Eq. 6 and 7) and their intersections. Filled: "
+        "fig2b",
+        "2r",
+        "Component-wise level sets (Eq. 6 and 7) and their intersections. Filled: "
         "stable, hollow: unstable.",
         level_set_map(curves, q, sets, labels=labels, stable=stable),
-    )  # fmt: skip
+    )
     yield Picture(
-        "fig5", "2r", "Physical joint angles q1, q2 and the virtual angle q*.",
+        "fig5",
+        "2r",
+        "Physical joint angles q1, q2 and the virtual angle q*.",
         joint_angles(np.array(data["posture"])[0]),
-    )  # fmt: skip
+    )
 
 
 def domain_picture(data: Data) -> Iterator[Picture]:
     """Draw Fig. 6 from the experiment ``domain-2r``."""
     yield Picture(
-        "fig6", "2r", f"The BCTS and its {len(data['images'])} images under the group.",
+        "fig6",
+        "2r",
+        f"The BCTS and its {len(data['images'])} images under the group.",
         domain_map(
-            np.array(data["polygon"]), images=np.array(data["images"]),
+            np.array(data["polygon"]),
+            images=np.array(data["images"]),
             center=np.array(data["center"]),
         ),
-    )  # fmt: skip
+    )
 
 
 def structure_picture(data: Data) -> Iterator[Picture]:
     """Draw Fig. 9 from the experiment ``ranges-3r``."""
     skeleton = data["skeleton"]
     yield Picture(
-        "fig9", "3r", "Structure of the 3R arm: axis 1 horizontal, along the arm stretched out at "
+        "fig9",
+        "3r",
+        "Structure of the 3R arm: axis 1 horizontal, along the arm stretched out at "
         "q = 0; axes 2 and 3 parallel, perpendicular to it.",
         arm_structure(
             skeleton["joints"], skeleton["axes"], skeleton["centres"][-1], skeleton["masses"][-1]
         ),
-    )  # fmt: skip
+    )
 
 
 def online_pictures(literal: Data, iterated: Data) -> Iterator[Picture]:
     """Draw Fig. 10 to 12 from the experiments ``literal-2r`` and ``iterated-2r``."""
     polygon = None if literal["polygon"] is None else np.array(literal["polygon"])
     yield Picture(
-        "fig10", "2r", "Explored configurations, and those learned from them by symmetry: the BCTS "
+        "fig10",
+        "2r",
+        "Explored configurations, and those learned from them by symmetry: the BCTS "
         "explored is the one in which the arm holds itself.",
         explored_map(np.array(literal["explored"]), np.array(literal["images"]), domain=polygon),
-    )  # fmt: skip
+    )
     for name, key, data, words in (
         ("fig11", "maintained_66", literal, "66 targets in the paper's BCTS, LLM"),
         ("fig12a", "maintained_90", literal, "90 targets, LLM"),
@@ -93,24 +110,32 @@ def arm_pictures(
     """Draw Fig. 14 and 15 from the experiments on the 3R arm and on batch learning."""
     if batch_2r is not None:
         yield _maintained(
-            "fig14a", "batch", "90 targets of the 2R arm, 255 samples, 18 neurons",
+            "fig14a",
+            "batch",
+            "90 targets of the 2R arm, 255 samples, 18 neurons",
             batch_2r["maintained_90"],
-        )  # fmt: skip
+        )
     if batch_3r is not None:
         yield _maintained(
-            "fig14b", "batch", "64 targets of the 3R arm, 600 samples, 30 neurons",
+            "fig14b",
+            "batch",
+            "64 targets of the 3R arm, 600 samples, 30 neurons",
             batch_3r["maintained_fine"],
-        )  # fmt: skip
+        )
     if online is not None:
         yield _maintained(
-            "fig15a", "3r", "64 targets of the 3R arm, LLM_it, guided arm while learning",
+            "fig15a",
+            "3r",
+            "64 targets of the 3R arm, LLM_it, guided arm while learning",
             online["maintained_64"],
-        )  # fmt: skip
+        )
     if batch_3r is not None:
         yield _maintained(
-            "fig15b", "batch", "64 targets of the 3R arm, 65 samples, 18 neurons",
+            "fig15b",
+            "batch",
+            "64 targets of the 3R arm, 65 samples, 18 neurons",
             batch_3r["maintained_small"],
-        )  # fmt: skip
+        )
 
 
 def _maintained(name: str, section: str, words: str, data: Data) -> Picture:

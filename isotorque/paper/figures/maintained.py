@@ -60,9 +60,11 @@ def maintained_map(
     stays = np.asarray(held, dtype=bool)
     if not len(wanted) == len(seen) == len(stays):
         raise InputError(
-            "figure", "rows of targets, observed, held", (len(wanted), len(seen), len(stays)),
+            "figure",
+            "rows of targets, observed, held",
+            (len(wanted), len(seen), len(stays)),
             "equal numbers",
-        )  # fmt: skip
+        )
     n = wanted.shape[1]
     names = names_of(joint_names, n)
     wanted, seen = ((x + np.pi) % (2 * np.pi) - np.pi for x in (wanted, seen))
@@ -73,9 +75,14 @@ def maintained_map(
             angle_plane(ax, (names[i], names[j]))
             for chosen, face in ((stays, BLUE), (~stays, PAPER)):
                 ax.plot(
-                    seen[chosen, i], seen[chosen, j], "o", color=BLUE, markersize=5.2,
-                    markerfacecolor=face, markeredgewidth=0.9,
-                )  # fmt: skip
+                    seen[chosen, i],
+                    seen[chosen, j],
+                    "o",
+                    color=BLUE,
+                    markersize=5.2,
+                    markerfacecolor=face,
+                    markeredgewidth=0.9,
+                )
             ax.plot(wanted[:, i], wanted[:, j], "x", color=RED, markersize=3.4)
             if domain is not None and n == 2:
                 corners = ordered(rows(domain, 2, what="domain"))

@@ -48,9 +48,14 @@ def many_to_one(q: ArrayLike, torques: ArrayLike) -> Figure:
             middle = needed[chosen].mean(axis=0)
             right.plot(*middle, mark, color=colour, markersize=8.0)
             right.annotate(
-                f"{chosen.sum()} configurations", tuple(middle), xytext=(0, 9),
-                textcoords="offset points", ha="center", fontsize=8, color=colour,
-            )  # fmt: skip
+                f"{chosen.sum()} configurations",
+                tuple(middle),
+                xytext=(0, 9),
+                textcoords="offset points",
+                ha="center",
+                fontsize=8,
+                color=colour,
+            )
         span = 1.9 * np.abs(needed).max(axis=0)
         right.set_xlim(-span[0], span[0])
         right.set_ylim(-span[1], span[1])

@@ -26,21 +26,30 @@ def discovery_pictures(data: Data) -> Iterator[Picture]:
     """Draw Fig. 3 and 4 from the experiment ``discovery-2r``."""
     traces = [
         ProfileTrace(
-            np.array(t["times"]), np.array(t["torques"]), np.array(t["q"]), t["outcome"],
+            np.array(t["times"]),
+            np.array(t["torques"]),
+            np.array(t["q"]),
+            t["outcome"],
             np.array(t["final"]),
         )
         for t in data["traces"]
-    ]  # fmt: skip
+    ]
     if not traces:
         return
     yield Picture(
-        "fig3", "2r", f"{len(traces)} torque profiles of one sequence; they begin and end at the "
-        "same absolute torque.", torque_profiles(traces),
-    )  # fmt: skip
+        "fig3",
+        "2r",
+        f"{len(traces)} torque profiles of one sequence; they begin and end at the "
+        "same absolute torque.",
+        torque_profiles(traces),
+    )
     yield Picture(
-        "fig4", "2r", "The motion they led to. Dots: where the arm settled; red crosses: a joint "
-        "limit was met, or it did not settle, and went home.", joint_trajectories(traces),
-    )  # fmt: skip
+        "fig4",
+        "2r",
+        "The motion they led to. Dots: where the arm settled; red crosses: a joint "
+        "limit was met, or it did not settle, and went home.",
+        joint_trajectories(traces),
+    )
 
 
 def static_torque_pictures(data: Data) -> Iterator[Picture]:
@@ -58,9 +67,11 @@ def static_torque_pictures(data: Data) -> Iterator[Picture]:
         held, refused = np.array(data[key]["held"]), np.array(data[key]["refused"])
         shape = (-1, held.shape[1])
         yield Picture(
-            name, "2r", f"{words}: settled under, and inadmissible ones.",
+            name,
+            "2r",
+            f"{words}: settled under, and inadmissible ones.",
             static_torque_map(held, refused.reshape(shape)),
-        )  # fmt: skip
+        )
 
 
 def learning_pictures(
@@ -81,13 +92,19 @@ def learning_pictures(
     ]
     for name, logarithmic in (("fig13", False), ("fig13-log", True)):
         yield Picture(
-            name, "2r", "Torque RMSE at the paper's targets against iterations of 100 samples"
+            name,
+            "2r",
+            "Torque RMSE at the paper's targets against iterations of 100 samples"
             + (", logarithmic axes." if logarithmic else "."),
             learning_curves(
-                curves, logarithmic=logarithmic, iteration=size, published=printed,
-                goal=paper.RMSE_66 if logarithmic else None, top=LINEAR_TOP,
+                curves,
+                logarithmic=logarithmic,
+                iteration=size,
+                published=printed,
+                goal=paper.RMSE_66 if logarithmic else None,
+                top=LINEAR_TOP,
             ),
-        )  # fmt: skip
+        )
 
 
 def batch_pictures(arm: str, batch: Sequence[Data], error: float) -> Iterator[Picture]:
@@ -97,10 +114,13 @@ def batch_pictures(arm: str, batch: Sequence[Data], error: float) -> Iterator[Pi
         _curve("without", [d["plain"] for d in batch], "dense"),
     ]
     yield Picture(
-        f"factor-{arm}", "batch", f"{arm.upper()}: error on the dense set against samples, "
+        f"factor-{arm}",
+        "batch",
+        f"{arm.upper()}: error on the dense set against samples, "
         f"networks of {paper.HIDDEN} neurons; dashed: the paper's error. The horizontal distance "
-        "is the factor.", learning_curves(curves, goal=error),
-    )  # fmt: skip
+        "is the factor.",
+        learning_curves(curves, goal=error),
+    )
 
 
 def _curve(name: str, seeds: Sequence[Data], key: str) -> LearningCurve:

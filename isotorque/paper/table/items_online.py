@@ -42,40 +42,66 @@ def _online_2r(
         *(
             Item(
                 f"RMSE after 540 iterations of the LLM, {count} targets{name}",
-                "7.1.1, Fig. 11, 12A", experiment, number(f"rmse_{count}"), printed,
-                "N m", at_most(SLACK), why(f"rmse_{count}"), _DENSE,
+                "7.1.1, Fig. 11, 12A",
+                experiment,
+                number(f"rmse_{count}"),
+                printed,
+                "N m",
+                at_most(SLACK),
+                why(f"rmse_{count}"),
+                _DENSE,
             )
             for count, printed in ((66, paper.RMSE_66), (90, paper.RMSE_90))
         ),
         Item(
-            f"iterations of the LLM until 0.0053 N m, 66 targets{name}", "7.1.1, Fig. 13",
-            experiment, number("iterations_66"), paper.ITERATIONS_LLM, "iterations of 100",
-            at_most(SLACK), why("iterations_66"),
+            f"iterations of the LLM until 0.0053 N m, 66 targets{name}",
+            "7.1.1, Fig. 13",
+            experiment,
+            number("iterations_66"),
+            paper.ITERATIONS_LLM,
+            "iterations of 100",
+            at_most(SLACK),
+            why("iterations_66"),
             {"90 targets": number("iterations_90"), "dense set": number("iterations_dense")},
         ),
         Item(
-            f"RMSE after 3000 iterations of the LLM, 66 targets{name}", "7.1.1, Fig. 13",
-            experiment, number("long_rmse_66"), paper.LONG_RMSE, "N m", at_most(SLACK),
+            f"RMSE after 3000 iterations of the LLM, 66 targets{name}",
+            "7.1.1, Fig. 13",
+            experiment,
+            number("long_rmse_66"),
+            paper.LONG_RMSE,
+            "N m",
+            at_most(SLACK),
             why("long_rmse_66"),
             {"90 targets": number("long_rmse_90"), "dense set": number("long_rmse_dense")},
         ),
-    )  # fmt: skip
+    )
 
 
 ONLINE_2R = (
     *_online_2r("", "literal-2r", _open_loop_why),
     *_online_2r(", guided arm", "guided-literal-2r", _guided_why),
     Item(
-        "share of the BCTS explored after 3000 iterations", "7.1.1, Fig. 10", "literal-2r",
-        number("explored_share"), 1.0, "", at_least(1.0 - MOST_OF_IT),
+        "share of the BCTS explored after 3000 iterations",
+        "7.1.1, Fig. 10",
+        "literal-2r",
+        number("explored_share"),
+        1.0,
+        "",
+        at_least(1.0 - MOST_OF_IT),
         lambda n: (
             f"{percent(n['explored_share'])}: next to the fold the arm gives way, and the set of "
             "static torques keeps it away"
         ),
     ),
     Item(
-        "of 66 targets reached and maintained", "7.1.1, Fig. 11", "literal-2r+holding-2r",
-        number("literal-2r.held_66"), 66, "", equal(),
+        "of 66 targets reached and maintained",
+        "7.1.1, Fig. 11",
+        "literal-2r+holding-2r",
+        number("literal-2r.held_66"),
+        66,
+        "",
+        equal(),
         lambda n: (
             f"{n['literal-2r.stable_66']:g} of the 66 are stable equilibria; elsewhere 5 s within "
             "0.05 rad are a question of the last digits of the torque (next two rows); of their "
@@ -85,13 +111,23 @@ ONLINE_2R = (
         {"symmetric copies maintained": number("literal-2r.copies_held_66")},
     ),
     Item(
-        "the same with the exact torque", "7.1.1, Fig. 11", "holding-2r", number("held_exact"),
-        66, "", equal(),
+        "the same with the exact torque",
+        "7.1.1, Fig. 11",
+        "holding-2r",
+        number("held_exact"),
+        66,
+        "",
+        equal(),
         lambda n: "rounding has grown to 0.05 rad within 5 s",
     ),
     Item(
-        "time within 0.05 rad of the 66 targets, torque off by 0.0053 N m", "7.1.1, Fig. 11",
-        "holding-2r", number("seconds"), "maintained", "s", above(HOLD_SECONDS, "s"),
+        "time within 0.05 rad of the 66 targets, torque off by 0.0053 N m",
+        "7.1.1, Fig. 11",
+        "holding-2r",
+        number("seconds"),
+        "maintained",
+        "s",
+        above(HOLD_SECONDS, "s"),
         lambda n: (
             "an error of the torque grows exponentially where nothing is stable: a tenfold "
             f"smaller one gives {n['seconds_per_tenfold']:.2g} s more, with twice the damping "
@@ -103,8 +139,13 @@ ONLINE_2R = (
         },
     ),
     Item(
-        "iterations of LLM_it until 0.0053 N m, 84 targets", "7.1.1, Fig. 12B, 13", "iterated-2r",
-        number("iterations_84"), paper.ITERATIONS_LLM_IT, "iterations of 100", at_most(SLACK),
+        "iterations of LLM_it until 0.0053 N m, 84 targets",
+        "7.1.1, Fig. 12B, 13",
+        "iterated-2r",
+        number("iterations_84"),
+        paper.ITERATIONS_LLM_IT,
+        "iterations of 100",
+        at_most(SLACK),
         lambda n: (
             f"{text(n['iterations_84'])}; {text(n['rmse_84'])} N m after 30 (kernels 2.5 d wide, "
             "60 replays); what is missing lies at the fold, where few samples settle"
@@ -112,14 +153,24 @@ ONLINE_2R = (
         {"dense set": number("iterations_dense")},
     ),
     Item(
-        "RMSE after 30 iterations of LLM_it, 84 targets", "7.1.1, Fig. 12B", "iterated-2r",
-        number("rmse_84"), paper.RMSE_84, "N m", at_most(SLACK),
+        "RMSE after 30 iterations of LLM_it, 84 targets",
+        "7.1.1, Fig. 12B",
+        "iterated-2r",
+        number("rmse_84"),
+        paper.RMSE_84,
+        "N m",
+        at_most(SLACK),
         lambda n: "what is missing lies at the fold, where few samples settle",
         _DENSE,
     ),
     Item(
-        "the same with the kernel as printed, no replay", "5.3.2", "iterated-2r",
-        number("printed_rmse_84"), paper.RMSE_84, "N m", at_most(SLACK),
+        "the same with the kernel as printed, no replay",
+        "5.3.2",
+        "iterated-2r",
+        number("printed_rmse_84"),
+        paper.RMSE_84,
+        "N m",
+        at_most(SLACK),
         lambda n: (
             "features stay fixed while gradient steps are iterated, so their limit is one "
             "normalised step: it takes away the error of one sample and no more; what the row "
@@ -127,7 +178,7 @@ ONLINE_2R = (
         ),
         {"dense set": number("printed_rmse_dense")},
     ),
-)  # fmt: skip
+)
 
 
 def _more_samples(numbers: Numbers) -> float:
@@ -141,33 +192,58 @@ def _more_samples(numbers: Numbers) -> float:
 FACTOR = (
     Item(
         "samples of the LLM over those of LLM_it for the error of LLM_it after 30 iterations, "
-        "dense set", "7.1.1, Fig. 13", "literal-2r+iterated-2r", _more_samples,
-        paper.FACTOR_LLM_IT, "", at_least(SLACK),
+        "dense set",
+        "7.1.1, Fig. 13",
+        "literal-2r+iterated-2r",
+        _more_samples,
+        paper.FACTOR_LLM_IT,
+        "",
+        at_least(SLACK),
         lambda n: f"that error is {text(n['iterated-2r.rmse_dense'])} N m, and the LLM comes there",
         {"error [N m]": number("iterated-2r.rmse_dense")},
     ),
-)  # fmt: skip
+)
 
 TIMES = (
     Item(
-        "time of an iteration of the LLM", "7.1.1", "update-times-2r", number("plain_seconds"),
-        paper.MINUTES_LLM * SECONDS_PER_MINUTE, "s", at_most(), settings_differ, timed=True,
+        "time of an iteration of the LLM",
+        "7.1.1",
+        "update-times-2r",
+        number("plain_seconds"),
+        paper.MINUTES_LLM * SECONDS_PER_MINUTE,
+        "s",
+        at_most(),
+        settings_differ,
+        timed=True,
     ),
     Item(
-        "time of an iteration of LLM_it", "7.1.1", "update-times-2r", number("iterated_seconds"),
-        paper.MINUTES_LLM_IT * SECONDS_PER_MINUTE, "s", at_most(), settings_differ, timed=True,
+        "time of an iteration of LLM_it",
+        "7.1.1",
+        "update-times-2r",
+        number("iterated_seconds"),
+        paper.MINUTES_LLM_IT * SECONDS_PER_MINUTE,
+        "s",
+        at_most(),
+        settings_differ,
+        timed=True,
     ),
     Item(
-        "time of LLM_it over time of LLM", "7.1.1", "update-times-2r", number("ratio"),
-        paper.TIME_RATIO, "", at_most(),
+        "time of LLM_it over time of LLM",
+        "7.1.1",
+        "update-times-2r",
+        number("ratio"),
+        paper.TIME_RATIO,
+        "",
+        at_most(),
         lambda n: (
             "the gradient steps of LLM_it are done at once and cost nothing "
             f"(ratio {n['printed_ratio']:.2g}); what costs are 60 samples replayed after each "
             "new one and kernels that reach 6 times as many prototypes"
         ),
-        {"without replay, kernel as printed": number("printed_ratio")}, timed=True,
+        {"without replay, kernel as printed": number("printed_ratio")},
+        timed=True,
     ),
-)  # fmt: skip
+)
 
 
 def _stable_why(numbers: Numbers) -> str:
@@ -176,8 +252,13 @@ def _stable_why(numbers: Numbers) -> str:
 
 ONLINE_3R = (
     Item(
-        "RMSE after 140 iterations of LLM_it, 64 targets", "7.1.2, Fig. 15A", "online-3r",
-        number("rmse_64"), paper.RMSE_3R, "N m", at_most(SLACK),
+        "RMSE after 140 iterations of LLM_it, 64 targets",
+        "7.1.2, Fig. 15A",
+        "online-3r",
+        number("rmse_64"),
+        paper.RMSE_3R,
+        "N m",
+        at_most(SLACK),
         lambda n: (
             "sign(sin q2 sin(q2 + q3)) is the same all over an orbit, so only a fifth of all "
             "orbits have a member that an arm without controller can hold; it learns there "
@@ -186,19 +267,35 @@ ONLINE_3R = (
         _DENSE,
     ),
     Item(
-        "iterations until 0.26 N m, where orbits have a stable member", "7.1.2", "online-3r",
-        number("iterations_stable"), paper.ITERATIONS_3R, "iterations of 100", at_most(),
+        "iterations until 0.26 N m, where orbits have a stable member",
+        "7.1.2",
+        "online-3r",
+        number("iterations_stable"),
+        paper.ITERATIONS_3R,
+        "iterations of 100",
+        at_most(),
         _stable_why,
     ),
     Item(
-        "iterations until 0.26 N m, 64 targets, guided arm", "7.1.2", "online-3r",
-        number("guided_iterations_64"), paper.ITERATIONS_3R, "iterations of 100", at_most(),
+        "iterations until 0.26 N m, 64 targets, guided arm",
+        "7.1.2",
+        "online-3r",
+        number("guided_iterations_64"),
+        paper.ITERATIONS_3R,
+        "iterations of 100",
+        at_most(),
         lambda n: f"{text(n['guided_rmse_64'])} N m after 140 iterations",
         {"dense set": number("guided_iterations_dense")},
     ),
     Item(
-        "RMSE after 140 iterations, 64 targets, guided arm", "7.1.2", "online-3r",
-        number("guided_rmse_64"), paper.RMSE_3R, "N m", at_most(), settings_differ,
+        "RMSE after 140 iterations, 64 targets, guided arm",
+        "7.1.2",
+        "online-3r",
+        number("guided_rmse_64"),
+        paper.RMSE_3R,
+        "N m",
+        at_most(),
+        settings_differ,
         {"dense set": number("guided_rmse_dense")},
     ),
-)  # fmt: skip
+)

@@ -16,66 +16,128 @@ INADMISSIBLE = 0.01
 
 SYMMETRIES = (
     Item(
-        "configurations of one absolute torque, 2R", "3.2.1, Fig. 2A", "symmetries-2r",
-        number("configurations"), paper.CONFIGURATIONS, "", equal(),
+        "configurations of one absolute torque, 2R",
+        "3.2.1, Fig. 2A",
+        "symmetries-2r",
+        number("configurations"),
+        paper.CONFIGURATIONS,
+        "",
+        equal(),
         lambda n: "the torque drawn lies where fewer configurations exist (8 or 16)",
         {"share of all torques that have so many": number("share_of_most")},
     ),
     Item(
-        "primary sets they fall into", "3.2.1, Fig. 2A", "symmetries-2r",
-        number("primary_sets"), paper.PRIMARY_SETS, "", equal(), settings_differ,
+        "primary sets they fall into",
+        "3.2.1, Fig. 2A",
+        "symmetries-2r",
+        number("primary_sets"),
+        paper.PRIMARY_SETS,
+        "",
+        equal(),
+        settings_differ,
     ),
     Item(
-        "configurations in each primary set", "3.2.1, Fig. 2A", "symmetries-2r",
-        number("per_set"), [paper.PRIMARY_2R] * paper.PRIMARY_SETS, "", equal(), settings_differ,
+        "configurations in each primary set",
+        "3.2.1, Fig. 2A",
+        "symmetries-2r",
+        number("per_set"),
+        [paper.PRIMARY_2R] * paper.PRIMARY_SETS,
+        "",
+        equal(),
+        settings_differ,
     ),
     Item(
-        "configurations of each signed torque", "3.2.1, Eq. 8", "symmetries-2r",
-        number("per_torque"), [paper.CONFIGURATIONS_PER_TORQUE] * 4, "", equal(), settings_differ,
+        "configurations of each signed torque",
+        "3.2.1, Eq. 8",
+        "symmetries-2r",
+        number("per_torque"),
+        [paper.CONFIGURATIONS_PER_TORQUE] * 4,
+        "",
+        equal(),
+        settings_differ,
     ),
     Item(
-        "primary symmetries of the 2R arm", "4.3.1", "ranges-2r",
-        number("order"), paper.PRIMARY_2R, "", equal(), settings_differ,
+        "primary symmetries of the 2R arm",
+        "4.3.1",
+        "ranges-2r",
+        number("order"),
+        paper.PRIMARY_2R,
+        "",
+        equal(),
+        settings_differ,
     ),
     Item(
-        "primary symmetries of the 3R arm", "4.3.1", "ranges-3r",
-        number("order"), paper.PRIMARY_3R, "", equal(), settings_differ,
+        "primary symmetries of the 3R arm",
+        "4.3.1",
+        "ranges-3r",
+        number("order"),
+        paper.PRIMARY_3R,
+        "",
+        equal(),
+        settings_differ,
     ),
     *(
         Item(
-            f"Eq. 11, map {place + 1}: largest torque error", "4.2, Eq. 11", "symmetries-2r",
-            entry("map_errors", place), 0.0, "N m", below(MAP_TOLERANCE, "N m"),
+            f"Eq. 11, map {place + 1}: largest torque error",
+            "4.2, Eq. 11",
+            "symmetries-2r",
+            entry("map_errors", place),
+            0.0,
+            "N m",
+            below(MAP_TOLERANCE, "N m"),
             lambda n: "the printed map is no symmetry of this arm",
             {"signs of the torques": entry("map_signs", place)},
         )
         for place in range(len(paper.PRINTED_MAPS))
     ),
-)  # fmt: skip
+)
 
 BCTS = (
     Item(
-        "BCTS: corners of the parallelogram (q1, q2)", "4.3.1, Fig. 6", "domain-2r",
-        number("corners"), [list(corner) for corner in paper.BCTS_CORNERS], "rad",
-        close_to(1e-9, "rad"), lambda n: f"the domain has {n['corner_count']:g} corners elsewhere",
+        "BCTS: corners of the parallelogram (q1, q2)",
+        "4.3.1, Fig. 6",
+        "domain-2r",
+        number("corners"),
+        [list(corner) for corner in paper.BCTS_CORNERS],
+        "rad",
+        close_to(1e-9, "rad"),
+        lambda n: f"the domain has {n['corner_count']:g} corners elsewhere",
     ),
     Item(
-        "reduction factor of the BCTS, 2R", "4.3.1", "domain-2r",
-        number("reduction"), paper.REDUCTION_2R, "", within(1e-9), settings_differ,
+        "reduction factor of the BCTS, 2R",
+        "4.3.1",
+        "domain-2r",
+        number("reduction"),
+        paper.REDUCTION_2R,
+        "",
+        within(1e-9),
+        settings_differ,
     ),
     Item(
-        "reduction with secondary symmetries, up to, 2R", "4.3.1", "symmetries-2r",
-        number("most_configurations"), paper.REDUCTION_WITH_SECONDARY, "", equal(), settings_differ,
+        "reduction with secondary symmetries, up to, 2R",
+        "4.3.1",
+        "symmetries-2r",
+        number("most_configurations"),
+        paper.REDUCTION_WITH_SECONDARY,
+        "",
+        equal(),
+        settings_differ,
     ),
     Item(
-        "configurations in the BCTS of one absolute torque, at most", "4.3.1", "symmetries-2r",
-        number("most_in_domain"), 1, "", equal(),
+        "configurations in the BCTS of one absolute torque, at most",
+        "4.3.1",
+        "symmetries-2r",
+        number("most_in_domain"),
+        1,
+        "",
+        equal(),
         lambda n: (
             f"a primary set has one member in the BCTS, but {100 * n['share_of_most']:.0f} % of "
             f"all torques have {n['most_in_domain']:g} primary sets (secondary symmetry): the BCTS "
             "is bijective up to those"
         ),
     ),
-)  # fmt: skip
+)
 
 
 def _range_items(arm: str, section: str, ranges: tuple[tuple[float, float], ...]) -> list[Item]:
@@ -84,11 +146,16 @@ def _range_items(arm: str, section: str, ranges: tuple[tuple[float, float], ...]
         for key, printed, words in (("lowest", low, "smallest"), ("highest", high, "largest")):
             items.append(
                 Item(
-                    f"{words} static torque of joint {joint + 1}, {arm.upper()}", section,
-                    f"ranges-{arm}", entry(key, joint), printed, "N m", within(RANGE_SHARE),
+                    f"{words} static torque of joint {joint + 1}, {arm.upper()}",
+                    section,
+                    f"ranges-{arm}",
+                    entry(key, joint),
+                    printed,
+                    "N m",
+                    within(RANGE_SHARE),
                     _range_reason(joint, printed),
                 )
-            )  # fmt: skip
+            )
     return items
 
 
@@ -122,46 +189,72 @@ def _discovered_why(numbers: Numbers) -> str:
 
 def _seen_in_pairs(arm: str, experiment: str, printed: int) -> Item:
     return Item(
-        f"of these seen in pairs of discovered configurations, {arm}", "4.2", experiment,
-        number("observed_relations"), printed, "", equal(),
+        f"of these seen in pairs of discovered configurations, {arm}",
+        "4.2",
+        experiment,
+        number("observed_relations"),
+        printed,
+        "",
+        equal(),
         lambda n: (
             "regression needs pairs, and an arm without controller shows only stable members of "
             f"a set: {n['observed_relations']:g} relations lead from one to another; the others "
             "are identified by fitting a rigid arm's potential to the same samples"
         ),
-    )  # fmt: skip
+    )
 
 
 DISCOVERY_2R = (
     Item(
-        "configurations discovered, first sequence of Fig. 4; our most", "4.1, Fig. 4",
-        "discovery-2r", number("most_discovered"), paper.DISCOVERED[0], "", equal(),
-        _discovered_why, {"stable ones there are": number("most_stable_members")},
+        "configurations discovered, first sequence of Fig. 4; our most",
+        "4.1, Fig. 4",
+        "discovery-2r",
+        number("most_discovered"),
+        paper.DISCOVERED[0],
+        "",
+        equal(),
+        _discovered_why,
+        {"stable ones there are": number("most_stable_members")},
     ),
     Item(
-        "configurations discovered, second sequence of Fig. 4; our most", "4.1, Fig. 4",
-        "discovery-2r", number("most_discovered"), paper.DISCOVERED[1], "", at_least(),
+        "configurations discovered, second sequence of Fig. 4; our most",
+        "4.1, Fig. 4",
+        "discovery-2r",
+        number("most_discovered"),
+        paper.DISCOVERED[1],
+        "",
+        at_least(),
         _discovered_why,
         {"median sequence": number("discovered"), "profiles played": number("profiles")},
     ),
     Item(
-        "relations learned before learning begins (n_min), 2R", "5.4", "discovery-2r",
-        number("relations"), paper.PRIMARY_2R, "", equal(),
+        "relations learned before learning begins (n_min), 2R",
+        "5.4",
+        "discovery-2r",
+        number("relations"),
+        paper.PRIMARY_2R,
+        "",
+        equal(),
         lambda n: f"only {n['relations']:g} were known after {n['motions']:g} motions",
         {"false ones": number("false_relations"), "settled samples": number("samples")},
     ),
     _seen_in_pairs("2R", "discovery-2r", paper.PRIMARY_2R),
-)  # fmt: skip
+)
 
 DISCOVERY_3R = (
     Item(
-        "relations learned before learning begins (n_min), 3R", "5.4", "discovery-3r",
-        number("relations"), paper.PRIMARY_3R, "", equal(),
+        "relations learned before learning begins (n_min), 3R",
+        "5.4",
+        "discovery-3r",
+        number("relations"),
+        paper.PRIMARY_3R,
+        "",
+        equal(),
         lambda n: f"only {n['relations']:g} were known after {n['motions']:g} motions",
         {"false ones": number("false_relations"), "settled samples": number("samples")},
     ),
     _seen_in_pairs("3R", "discovery-3r", paper.PRIMARY_3R),
-)  # fmt: skip
+)
 
 
 def _constrained_why(key: str) -> Value:
@@ -173,26 +266,47 @@ def _constrained_why(key: str) -> Value:
 
 STATIC_TORQUES = (
     Item(
-        "inadmissible torques, constrained Goal Babbling", "5.1, Fig. 7B", "static-torques-2r",
-        number("constrained_babbling_share"), "avoided", "", below(INADMISSIBLE, ""),
+        "inadmissible torques, constrained Goal Babbling",
+        "5.1, Fig. 7B",
+        "static-torques-2r",
+        number("constrained_babbling_share"),
+        "avoided",
+        "",
+        below(INADMISSIBLE, ""),
         _constrained_why("constrained_babbling_share"),
         {"RMSE of the model [N m]": number("constrained_babbling_rmse")},
     ),
     Item(
-        "inadmissible torques, original Goal Babbling", "5.1, Fig. 7A", "static-torques-2r",
-        number("babbling_share"), "occur", "", above(0.0, ""),
+        "inadmissible torques, original Goal Babbling",
+        "5.1, Fig. 7A",
+        "static-torques-2r",
+        number("babbling_share"),
+        "occur",
+        "",
+        above(0.0, ""),
         lambda n: "none occurred: the goals lie where the arm holds itself",
         {"RMSE of the model [N m]": number("babbling_rmse")},
     ),
     Item(
-        "inadmissible torques, Constrained Direction Sampling", "5.2", "static-torques-2r",
-        number("constrained_sampling_share"), "avoided", "", below(INADMISSIBLE, ""),
+        "inadmissible torques, Constrained Direction Sampling",
+        "5.2",
+        "static-torques-2r",
+        number("constrained_sampling_share"),
+        "avoided",
+        "",
+        below(INADMISSIBLE, ""),
         _constrained_why("constrained_sampling_share"),
         {"RMSE of the model [N m]": number("constrained_sampling_rmse")},
     ),
     Item(
-        "inadmissible torques, original Direction Sampling", "5.2", "static-torques-2r",
-        number("sampling_share"), "occur", "", above(0.0, ""), settings_differ,
+        "inadmissible torques, original Direction Sampling",
+        "5.2",
+        "static-torques-2r",
+        number("sampling_share"),
+        "occur",
+        "",
+        above(0.0, ""),
+        settings_differ,
         {"RMSE of the model [N m]": number("sampling_rmse")},
     ),
-)  # fmt: skip
+)

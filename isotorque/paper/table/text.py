@@ -50,9 +50,13 @@ def markdown(rows: Iterable[Row]) -> str:
             ours += f" ({shown(row.interval[0])} … {shown(row.interval[1])})"
         reason = row.rule + (f"; {row.why}" if row.why else "")
         cells = [
-            row.section, row.item + unit + beside, shown(row.paper), ours,
-            "yes" if row.holds else "**no**", reason,
-        ]  # fmt: skip
+            row.section,
+            row.item + unit + beside,
+            shown(row.paper),
+            ours,
+            "yes" if row.holds else "**no**",
+            reason,
+        ]
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines)
 

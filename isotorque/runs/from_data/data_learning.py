@@ -179,9 +179,14 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
 def _record(robot: Robot, samples: StaticSamples, out: Path) -> None:
     part = robot.options.as_json()
     info = RunInfo(
-        robot.name, robot.digest, robot.joint_names, "measured", "elsewhere",
-        options={"robot": part} if part else {}, part="data",
-    )  # fmt: skip
+        robot.name,
+        robot.digest,
+        robot.joint_names,
+        "measured",
+        "elsewhere",
+        options={"robot": part} if part else {},
+        part="data",
+    )
     with Recording.open_or_create(out / DATABASE, info) as recording:
         record_samples(recording, samples)
         recording.finish()

@@ -55,9 +55,14 @@ class ChainRecursion:
 
     @classmethod
     def of(
-        cls, parents: Integers, offsets: Array, twists: Array, levers: Array, gains: Array,
+        cls,
+        parents: Integers,
+        offsets: Array,
+        twists: Array,
+        levers: Array,
+        gains: Array,
         biases: Array,
-    ) -> ChainRecursion:  # fmt: skip
+    ) -> ChainRecursion:
         """Fold the offset of each first child into the angle of its parent: fewer products."""
         shifts, left = np.zeros(len(parents)), offsets.copy()
         for j in range(len(parents)):

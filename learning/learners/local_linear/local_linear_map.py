@@ -170,10 +170,21 @@ class LocalLinearMap(TorqueRegressor, SavedLearner):
         draws = self._random.random((len(q), 1 + self.replay if self.replay else 0))
         progress = np.zeros(3, dtype=np.int64)
         while not train(
-            self._grid, self._counts, self._parameters, self._symmetries, q, torque, weights,
-            self._memory_q, self._memory_torque, self._stored, draws, self._scratch, self._rule,
+            self._grid,
+            self._counts,
+            self._parameters,
+            self._symmetries,
+            q,
+            torque,
+            weights,
+            self._memory_q,
+            self._memory_torque,
+            self._stored,
+            draws,
+            self._scratch,
+            self._rule,
             progress,
-        ):  # fmt: skip
+        ):
             self._make_room(2 * len(self._parameters))
         self.n_samples_seen_ += len(q)
         return self
@@ -184,9 +195,14 @@ class LocalLinearMap(TorqueRegressor, SavedLearner):
         q = checked_configurations(self, X, first=False)
         result = np.empty((len(q), self.n_outputs_))
         predict_batch(
-            self._grid, self._counts, self._parameters, self._coordinates.coordinates(q),
-            self._scratch, self._rule, result,
-        )  # fmt: skip
+            self._grid,
+            self._counts,
+            self._parameters,
+            self._coordinates.coordinates(q),
+            self._scratch,
+            self._rule,
+            result,
+        )
         return result[:, 0] if self._flat else result
 
     def jacobian(self, X: Any) -> Array:
@@ -195,9 +211,14 @@ class LocalLinearMap(TorqueRegressor, SavedLearner):
         q = checked_configurations(self, X, first=False)
         result = np.empty((len(q), self.n_outputs_, self._coordinates.rank))
         slope_batch(
-            self._grid, self._counts, self._parameters, self._coordinates.coordinates(q),
-            self._scratch, self._rule, result,
-        )  # fmt: skip
+            self._grid,
+            self._counts,
+            self._parameters,
+            self._coordinates.coordinates(q),
+            self._scratch,
+            self._rule,
+            result,
+        )
         return np.asarray(result @ (self._coordinates.isometry @ self._coordinates.basis))
 
     @property

@@ -270,9 +270,16 @@ class RecursiveLeastSquares(TorqueRegressor, SavedLearner):
         count = int(self._counts[0]) * (1 + self._coordinates.rank)
         result = np.empty((len(self._classes), len(q), count))
         tied_features_batch(
-            self._grid, self._counts, self._symmetries, self._signs, q, self.radius,
-            self.kernel_width * self.radius, self._work, result,
-        )  # fmt: skip
+            self._grid,
+            self._counts,
+            self._symmetries,
+            self._signs,
+            q,
+            self.radius,
+            self.kernel_width * self.radius,
+            self._work,
+            result,
+        )
         return result
 
     def _take_in(self, q: Array, torque: Array, weights: Array) -> None:

@@ -135,9 +135,22 @@ def remember(stored, memory_q, memory_torque, q, torque, draw):
 
 @compiled
 def run(
-    grid, parameters, symmetries, q, torque, weights, memory_q, memory_torque, stored, draws, work,
-    rule, progress, y, signed,
-):  # fmt: skip
+    grid,
+    parameters,
+    symmetries,
+    q,
+    torque,
+    weights,
+    memory_q,
+    memory_torque,
+    stored,
+    draws,
+    work,
+    rule,
+    progress,
+    y,
+    signed,
+):
     """Learn samples from ``progress`` on, until one needs a new prototype or all are done.
 
     ``progress`` is [sample, item (0: the sample itself, then replays), copy]. Returns whether
@@ -178,9 +191,21 @@ def run(
 
 @compiled
 def train(
-    grid, counts, parameters, symmetries, q, torque, weights, memory_q, memory_torque, stored,
-    draws, work, rule, progress,
-):  # fmt: skip
+    grid,
+    counts,
+    parameters,
+    symmetries,
+    q,
+    torque,
+    weights,
+    memory_q,
+    memory_torque,
+    stored,
+    draws,
+    work,
+    rule,
+    progress,
+):
     """Learn samples in their order, each followed by the replay of remembered ones.
 
     ``stored`` is [samples remembered, samples seen]; ``draws`` (m, 1 + replays) are uniform random
@@ -190,9 +215,22 @@ def train(
     y = np.empty(symmetries[1].shape[1])
     signed = np.empty(torque.shape[1] + 1)
     while run(
-        grid, parameters, symmetries, q, torque, weights, memory_q, memory_torque, stored, draws,
-        work, rule, progress, y, signed,
-    ):  # fmt: skip
+        grid,
+        parameters,
+        symmetries,
+        q,
+        torque,
+        weights,
+        memory_q,
+        memory_torque,
+        stored,
+        draws,
+        work,
+        rule,
+        progress,
+        y,
+        signed,
+    ):
         if counts[0] == parameters.shape[0]:
             return False
         update(grid, counts, parameters, y, signed[:-1], signed[-1], work, rule)

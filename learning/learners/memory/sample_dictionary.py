@@ -77,14 +77,25 @@ class SampleDictionary:
         y = self._coordinates.basis @ q
         images = self._coordinates.A_sat @ y + self._coordinates.d_sat
         slot = _slot_for(
-            self._y, self._size, self.budget, images, self._coordinates.isometry,
+            self._y,
+            self._size,
+            self.budget,
+            images,
+            self._coordinates.isometry,
             self._distance,
-        )  # fmt: skip
+        )
         self._q[slot], self._torque[slot], self._weights[slot] = q, torque, weight
         self._size = _settle_in(
-            self._y, self._size, slot, y, self._coordinates.A_sat, self._coordinates.d_sat,
-            self._coordinates.isometry, self._nearest, self._distance,
-        )  # fmt: skip
+            self._y,
+            self._size,
+            slot,
+            y,
+            self._coordinates.A_sat,
+            self._coordinates.d_sat,
+            self._coordinates.isometry,
+            self._nearest,
+            self._distance,
+        )
 
     def draw(self, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
         """Random samples with replacement: q (count, n), torques (count, k), weights (count,)."""

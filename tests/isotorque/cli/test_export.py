@@ -71,8 +71,11 @@ def test_a_saved_model_in_all_three_forms(learner, kind, export, saved, tmp_path
     found = export(folder, "--c", c, "--casadi", function, "--npz", npz)
     assert found["kind"] == kind
     assert [found[k] for k in ("c", "casadi", "npz", "json")] == [
-        str(c), str(function), str(npz), str(tmp_path / "g.json")
-    ]  # fmt: skip
+        str(c),
+        str(function),
+        str(npz),
+        str(tmp_path / "g.json"),
+    ]
     q = far_queries(2)
     expected = learner.predict(q)
     size = np.abs(expected).max()

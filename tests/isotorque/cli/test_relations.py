@@ -103,10 +103,13 @@ def test_few_samples_leave_candidates_untestable(tmp_path, capsys):
         ('{"relations": []}', "relations"),
         ('{"relations": [{"A": [[1]], "d": [0], "Y": [1]}]}', "relations[0].A"),
         ('{"relations": [{"A": [[1, 0], [0, 1]], "d": [0, 0], "Y": [1, 2]}]}', "Y"),
-        ('{"joints": ["b", "a"], "relations": [{"A": [[1, 0], [0, 1]], "d": [0, 0], "Y": [1, 1]}]}',
-         "joints"),
+        (
+            '{"joints": ["b", "a"], "relations": '
+            '[{"A": [[1, 0], [0, 1]], "d": [0, 0], "Y": [1, 1]}]}',
+            "joints",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_bad_file_of_candidates_is_refused(two_link, tmp_path, capsys, text, word):
     path = tmp_path / "bad.json"
     path.write_text(text)

@@ -17,10 +17,18 @@ from isotorque.cli.robot_options import ROBOT_OPTIONS
 from isotorque.symbolic.robots.load_robot import load_robot
 from tests.symbolic.robots.test_robot_selection import GRIPPERS, arm, text
 
-COMMANDS = (
-    "derive", "symmetries", "domain", "simulate", "discover", "learn", "verify", "run", "relations",
+COMMANDS = [
+    "derive",
+    "symmetries",
+    "domain",
+    "simulate",
+    "discover",
+    "learn",
+    "verify",
+    "run",
+    "relations",
     "export",
-)  # fmt: skip
+]
 
 
 @pytest.fixture
@@ -83,8 +91,8 @@ def test_standard_input_is_a_robot(call, robot, monkeypatch):
 def test_a_run_keeps_its_robot(call, robot, tmp_path):
     """Discovered, learned, judged, tested and exported with what the first command was told."""
     out, part = tmp_path / "out", ["--lock", "finger_*", "--payload", "0.5", "--physics", "guided"]
-    call("learn", robot, "--out", out, *part, "--strategy", "lattice", "--samples", "64",
-         "--learner", "trigonometric", "--symmetries", "none")  # fmt: skip
+    lattice = ["--strategy", "lattice", "--samples", "64", "--symmetries", "none", "--learner"]
+    call("learn", robot, "--out", out, *part, *lattice, "trigonometric")
     recorded = {"lock": ["finger_*"], "payload": ["0.5"]}
     rows = sqlite3.connect(out / "run.sqlite").execute("select * from part").fetchall()
     assert any("finger_*" in str(row) for row in rows)
@@ -96,8 +104,7 @@ def test_a_run_keeps_its_robot(call, robot, tmp_path):
     call(*other, expect=1)
     found = document(call, "relations", out)
     assert found["robot_options"] == recorded
-    again = ["learn", robot, "--out", out, "--strategy", "lattice", "--samples", "64",
-             "--learner", "parametric", "--symmetries", "none"]  # fmt: skip
+    again = ["learn", robot, "--out", out, *lattice, "parametric"]
     call(*again)
     exported = document(call, "export", out, "--npz", tmp_path / "m.npz")
     assert exported["robot_options"] == recorded

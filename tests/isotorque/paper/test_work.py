@@ -46,12 +46,8 @@ def cluster(tmp_path):
     from distributed import Client
 
     file = tmp_path / "scheduler.json"
-    processes = [
-        begin(
-            "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0",
-            "--no-dashboard", "--scheduler-file", str(file),
-        )
-    ]  # fmt: skip
+    scheduler = "distributed.cli.dask_scheduler --host 127.0.0.1 --port 0 --no-dashboard"
+    processes = [begin(*scheduler.split(), "--scheduler-file", str(file))]
     try:
         wait_until(file.exists)
         address = None
@@ -60,11 +56,11 @@ def cluster(tmp_path):
             for name in ("first", "second"):
                 processes.append(
                     begin(
-                        "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-nanny",
-                        "--no-dashboard", "--name", name,
-                        "--local-directory", str(tmp_path / name),
+                        *("distributed.cli.dask_worker", address, "--name", name),
+                        *("--local-directory", str(tmp_path / name)),
+                        *["--nthreads", "1", "--no-nanny", "--no-dashboard"],
                     )
-                )  # fmt: skip
+                )
             client.wait_for_workers(2, timeout=120)
         yield address, processes[1:]
     finally:

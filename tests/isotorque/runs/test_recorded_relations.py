@@ -29,8 +29,11 @@ def test_relations_that_the_limits_forbid_are_marked(report):
     executable = [entry["executable"] for entry in relations]
     assert executable[0] is True
     assert 0 < executable.count(False) < 8
-    upside_down = next(entry for entry in relations if entry["relation"]["A"] == [[1, 0], [0, 1]]
-                       and entry["relation"]["Y"] == [-1, -1])  # fmt: skip
+    upside_down = next(
+        entry
+        for entry in relations
+        if entry["relation"]["A"] == [[1, 0], [0, 1]] and entry["relation"]["Y"] == [-1, -1]
+    )
     assert upside_down["executable"] is False
     page = (report / "report.html").read_text()
     assert page.count("not executable within the joint limits") == executable.count(False)

@@ -28,10 +28,15 @@ GROUP = close([SymmetryRelation(np.eye(2), [np.pi, 0], [-1, -1])])
 @pytest.mark.parametrize("domain", [None, FundamentalDomain(GROUP)], ids=["anywhere", "domain"])
 def test_every_name_makes_another_exploration(name, domain):
     made = exploration_by_name(
-        name, None, None, np.random.default_rng(0),
-        domain=domain, seen=np.array([[-1.0, 0.5], [1.0, 2.0]]), torque_range=[1.0, 2.0],
+        name,
+        None,
+        None,
+        np.random.default_rng(0),
+        domain=domain,
+        seen=np.array([[-1.0, 0.5], [1.0, 2.0]]),
+        torque_range=[1.0, 2.0],
         static_torques=None,
-    )  # fmt: skip
+    )
     assert isinstance(made, Exploration)
     assert isinstance(made, GuidedDirectionSampling) == (name == GUIDED_DIRECTIONS)
     if name == "goal-babbling":

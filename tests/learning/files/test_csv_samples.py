@@ -129,10 +129,12 @@ def test_only_finite_samples_of_the_right_shape_are_written(tmp_path):
         ("q1,q2,tau1,tau2", ("q1", "q2")),
         ("tau2,q2,tau1,q1", ("q1", "q2")),
         ("elbow.q,base.q,base.tau,elbow.tau", ("elbow", "base")),
-        ("q10,q2,q1,q3,q4,q5,q6,q7,q8,q9," + ",".join(f"tau{k}" for k in range(1, 11)),
-         tuple(f"q{k}" for k in range(1, 11))),
+        (
+            "q10,q2,q1,q3,q4,q5,q6,q7,q8,q9," + ",".join(f"tau{k}" for k in range(1, 11)),
+            tuple(f"q{k}" for k in range(1, 11)),
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_header_names_the_joints(tmp_path, header, names):
     path = tmp_path / "arm.csv"
     path.write_text(header + "\n")

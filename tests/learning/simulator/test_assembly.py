@@ -47,9 +47,11 @@ def test_a_combination_of_joints_can_be_free():
     """Two coaxial horizontal joints: gravity feels the sum of the angles alone."""
     model = pin.Model()
     for i, inertia in enumerate(
-        [pin.Inertia(1.0, np.zeros(3), np.eye(3)),
-         pin.Inertia(1.0, np.array([0.3, 0, 0]), 0.01 * np.eye(3))]
-    ):  # fmt: skip
+        [
+            pin.Inertia(1.0, np.zeros(3), np.eye(3)),
+            pin.Inertia(1.0, np.array([0.3, 0, 0]), 0.01 * np.eye(3)),
+        ]
+    ):
         joint = model.addJoint(i, pin.JointModelRY(), pin.SE3.Identity(), f"joint{i}")
         model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
     free = find_free_directions(CompiledEquations(model))
@@ -111,9 +113,12 @@ def test_default_damping_is_near_critical(model):
     damping = default_damping(equations, free.stiffness_scale)
     assert (damping > 0).all()
     mass = np.max(
-        [np.diag(equations.mass_matrix(q))
-         for q in np.random.default_rng(9).uniform(-3, 3, (100, model.nv))], axis=0
-    )  # fmt: skip
+        [
+            np.diag(equations.mass_matrix(q))
+            for q in np.random.default_rng(9).uniform(-3, 3, (100, model.nv))
+        ],
+        axis=0,
+    )
     felt = free.stiffness_scale > 0
     ratio = damping[felt] / np.sqrt(mass * free.stiffness_scale)[felt]
     assert ((ratio > 1.0) & (ratio < 3.0)).all()
@@ -147,9 +152,10 @@ def test_home_keeps_to_narrow_limits():
     limits = np.array([[-0.9, -0.2], [-1.0, -0.3]])
     home = prepared("2r", limits=limits).home
     assert ((limits[:, 0] < home) & (home < limits[:, 1])).all()
-    assert find_home(
-        CompiledEquations(load_robot("2r").model), prepared("2r").free, limits
-    )[1] > STABLE  # fmt: skip
+    assert (
+        find_home(CompiledEquations(load_robot("2r").model), prepared("2r").free, limits)[1]
+        > STABLE
+    )
 
 
 def test_limits_without_a_stable_configuration_are_refused():

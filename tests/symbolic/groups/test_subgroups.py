@@ -33,8 +33,10 @@ def test_the_largest_subgroup_of_allowed_elements(forbidden):
     assert closed(found)
     assert not forbidden & set(found)
     pairs = itertools.combinations([i for i in range(24) if allowed[i]], 2)
-    larger = max((len(g) for g in (generated(TABLE, frozenset(p)) for p in pairs)
-                  if not g & forbidden), default=1)  # fmt: skip
+    larger = max(
+        (len(g) for g in (generated(TABLE, frozenset(p)) for p in pairs) if not g & forbidden),
+        default=1,
+    )
     assert len(found) >= larger  # subgroups of S4 need two generators at most
 
 

@@ -162,10 +162,18 @@ def arm(*more: UrdfJoint) -> Urdf:
     """Two revolute joints, and others beyond with a link of 0.1 kg each."""
     joints = [
         UrdfJoint("j1", "continuous", "base", "upper", axis=(0.0, 1.0, 0.0)),
-        UrdfJoint("j2", "revolute", "upper", "hand", (0.3, 0, 0), axis=(0.0, 1.0, 0.0),
-                  lower=-2.0, upper=-0.5),
+        UrdfJoint(
+            "j2",
+            "revolute",
+            "upper",
+            "hand",
+            (0.3, 0, 0),
+            axis=(0.0, 1.0, 0.0),
+            lower=-2.0,
+            upper=-0.5,
+        ),
         *more,
-    ]  # fmt: skip
+    ]
     links = [UrdfLink("base"), UrdfLink("upper", 2.0, (0.1, 0, 0))]
     links += [UrdfLink(joint.child, 0.1, (0.05, 0.0, 0.0)) for joint in joints[1:]]
     return Urdf("arm", "base", tuple(links), tuple(joints))
@@ -184,8 +192,16 @@ def text(urdf: Urdf) -> str:
 
 
 def finger(name: str, follows: Mimic | None = None, kind: str = "prismatic") -> UrdfJoint:
-    return UrdfJoint(name, kind, "hand", f"{name}_link", axis=(0.0, 1.0, 0.0), lower=0.01,
-                     upper=0.04, mimic=follows)  # fmt: skip
+    return UrdfJoint(
+        name,
+        kind,
+        "hand",
+        f"{name}_link",
+        axis=(0.0, 1.0, 0.0),
+        lower=0.01,
+        upper=0.04,
+        mimic=follows,
+    )
 
 
 GRIPPERS = {

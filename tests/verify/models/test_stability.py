@@ -37,9 +37,15 @@ def test_only_the_combination_that_gravity_feels_counts():
 
 def test_without_gravity_every_configuration_holds(upright):
     level = KinematicTree(
-        upright.joint_names, upright.parents, upright.rotations, upright.translations,
-        np.array([[0.0, 0.0, 1.0]] * 2), upright.masses, upright.levers, upright.gravity,
-    )  # fmt: skip
+        upright.joint_names,
+        upright.parents,
+        upright.rotations,
+        upright.translations,
+        np.array([[0.0, 0.0, 1.0]] * 2),
+        upright.masses,
+        upright.levers,
+        upright.gravity,
+    )
     assert is_stable(np.zeros((3, 2)), GravityModel(level)).all()
 
 

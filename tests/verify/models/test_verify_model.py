@@ -214,8 +214,11 @@ def test_nothing_is_claimed_beside_a_torque_of_zero(upright):
     gravity = GravityModel(dataclasses.replace(upright, masses=np.zeros(2)))
     verify_model(lambda q: 0 * q, gravity)  # measured, not claimed
     for claim in (
-        "tolerance", "largest_tolerance", "equivariance_tolerance", "periodicity_tolerance",
-    ):  # fmt: skip
+        "tolerance",
+        "largest_tolerance",
+        "equivariance_tolerance",
+        "periodicity_tolerance",
+    ):
         with pytest.raises(InputError, match="gravity torque is zero at every joint"):
             verify_model(lambda q: 0 * q, gravity, **{claim: 0.1})
 

@@ -183,10 +183,12 @@ def test_malformed_documents_are_refused_by_name(tmp_path, document, change, mes
         ("7", "relations is 7; accepted: a list"),
         ('{"relations": [{"A": [[1e999]]}]}', r"relations\[0\].A\[0\]\[0\] is Infinity"),
         ('{"relations": [{"A": [[1' + "0" * 5000 + "]]}]}", "a number is Exceeds the limit"),
-        ('{"basis": [[0, 1]], "relations": [{"A": [[1, 0], [1, 1]], "d": [0, 0], "Y": [1, 1]}]}',
-         "A is .*; accepted: a matrix that maps y = B q to y"),
+        (
+            '{"basis": [[0, 1]], "relations": [{"A": [[1, 0], [1, 1]], "d": [0, 0], "Y": [1, 1]}]}',
+            "A is .*; accepted: a matrix that maps y = B q to y",
+        ),
     ],
-)  # fmt: skip
+)
 def test_malformed_texts_are_refused(tmp_path, text, message):
     with pytest.raises(InputError, match=message):
         load(tmp_path, text)
@@ -211,13 +213,22 @@ def test_whatever_stands_in_the_file_is_read_or_refused(tmp_path, two_link, data
     document = json.loads(json.dumps(relations_document(two_link.group, JOINTS)))
     place, keys = document, None
     while isinstance(place, dict | list) and place and (keys is None or data.draw(st.booleans())):
-        keys = (place, data.draw(st.sampled_from(list(place) if isinstance(place, dict) else
-                                                 list(range(len(place))))))  # fmt: skip
+        keys = (
+            place,
+            data.draw(
+                st.sampled_from(list(place) if isinstance(place, dict) else list(range(len(place))))
+            ),
+        )
         place = place[keys[1]]
     keys[0][keys[1]] = data.draw(
-        st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=3)
-        | st.lists(st.integers(-2, 2), max_size=3) | st.just({})
-    )  # fmt: skip
+        st.none()
+        | st.booleans()
+        | st.integers()
+        | st.floats()
+        | st.text(max_size=3)
+        | st.lists(st.integers(-2, 2), max_size=3)
+        | st.just({})
+    )
     message = ""
     try:
         assert len(load(tmp_path, document)) == 8

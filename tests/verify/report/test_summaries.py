@@ -69,9 +69,19 @@ def test_a_discovery_without_profiles():
 def step(kind, q, learned=True, explored=None):
     outcome = kind(np.array(q), np.array([1.0, 2.0]), 1.0)
     return ExplorationStep(
-        0, next(iter(Phase)), None, outcome.torque, True, outcome, learned, 1.0, 0.0, False,
-        explored, None,
-    )  # fmt: skip
+        0,
+        next(iter(Phase)),
+        None,
+        outcome.torque,
+        True,
+        outcome,
+        learned,
+        1.0,
+        0.0,
+        False,
+        explored,
+        None,
+    )
 
 
 def test_exploration_is_counted_and_multiplied(two_link):

@@ -216,8 +216,12 @@ def test_json_holds_every_number_and_is_what_was_written(full, tmp_path, without
     assert written["curves"][0]["rmse"] == [0.01, 0.005, 0.0025]
     assert len(written["verdicts"]) == len(full.all_verdicts)
     assert set(written["verdicts"][0]) == {
-        "claim", "status", "passed", "worst_error", "counterexample",
-    }  # fmt: skip
+        "claim",
+        "status",
+        "passed",
+        "worst_error",
+        "counterexample",
+    }
 
 
 def test_no_number_of_the_page_is_fixed(full, without_pictures):
@@ -338,8 +342,12 @@ def test_joints_that_gravity_does_not_load_are_left_out_of_pictures(full, two_li
         exploration=ExplorationReport(rng.normal(size=(9, 3)), rng.normal(size=(9, 3)), 9, 9, 0, 0),
     )
     pictures = {picture.name: picture for picture in report_pictures(report)}
-    for name in ("fig3-torque-profiles", "fig4-joint-trajectories", "fig7-static-torques",
-                 "fig10-explored"):  # fmt: skip
+    for name in (
+        "fig3-torque-profiles",
+        "fig4-joint-trajectories",
+        "fig7-static-torques",
+        "fig10-explored",
+    ):
         assert pictures[name].caption.endswith("as gravity does not load it: pan."), name
     for name in ("fig7-static-torques", "fig10-explored"):
         (axes,) = pictures[name].figure.axes

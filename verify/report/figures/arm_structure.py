@@ -71,15 +71,25 @@ def arm_structure(joints: ArrayLike, axes: ArrayLike, tip: ArrayLike, mass: floa
             if length > SAME_PLACE:
                 x, y = _seen((a + b) / 2)
                 ax.annotate(
-                    f"{length:.3g} m", (x, y), xytext=(8, -10), textcoords="offset points",
-                    ha="left", fontsize=8.5, color=FAINT,
-                )  # fmt: skip
+                    f"{length:.3g} m",
+                    (x, y),
+                    xytext=(8, -10),
+                    textcoords="offset points",
+                    ha="left",
+                    fontsize=8.5,
+                    color=FAINT,
+                )
         x, y = _seen(end)
         ax.plot(x, y, "o", color=RED, markersize=13, zorder=3)
         ax.annotate(
-            f"{mass:g} kg", (x, y), xytext=(0, 11), textcoords="offset points", ha="center",
-            fontsize=9, color=RED,
-        )  # fmt: skip
+            f"{mass:g} kg",
+            (x, y),
+            xytext=(0, 11),
+            textcoords="offset points",
+            ha="center",
+            fontsize=9,
+            color=RED,
+        )
         corner = places.min(axis=0) - np.array([0.25, 0.0, 0.3]) * size
         for direction, name in zip(np.eye(3), "xyz", strict=True):
             _arrow(ax, corner, 0.15 * size * direction, name, FAINT)
@@ -99,12 +109,20 @@ def _arrow(ax: Axes, start: Array, step: Array, name: str, colour: str) -> None:
     (x, y), (to_x, to_y) = _seen(start), _seen(start + step)
     ax.plot([x, to_x], [y, to_y], color=colour, linewidth=1.4, zorder=1)
     ax.annotate(
-        "", xy=(to_x, to_y), xytext=(x, y),
+        "",
+        xy=(to_x, to_y),
+        xytext=(x, y),
         arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.4},
-    )  # fmt: skip
+    )
     away = np.array([to_x - x, to_y - y])
     away *= 9 / max(float(np.linalg.norm(away)), SAME_PLACE)
     ax.annotate(
-        name, (to_x, to_y), xytext=tuple(away), textcoords="offset points", ha="center",
-        va="center", color=colour, fontsize=9.5,
-    )  # fmt: skip
+        name,
+        (to_x, to_y),
+        xytext=tuple(away),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        color=colour,
+        fontsize=9.5,
+    )

@@ -65,7 +65,12 @@ def _arc(
     )
     middle = np.radians((start + end) / 2)
     ax.annotate(
-        text, (x + radius * np.cos(middle), y + radius * np.sin(middle)),
-        xytext=(5 * np.cos(middle), 5 * np.sin(middle)), textcoords="offset points",
-        color=colour, ha="left", va="center", fontsize=9,
-    )  # fmt: skip
+        text,
+        (x + radius * np.cos(middle), y + radius * np.sin(middle)),
+        xytext=(5 * np.cos(middle), 5 * np.sin(middle)),
+        textcoords="offset points",
+        color=colour,
+        ha="left",
+        va="center",
+        fontsize=9,
+    )

@@ -44,9 +44,11 @@ class LearningCurve:
             values = getattr(self, field)
             if values is not None and np.shape(values) != np.shape(self.samples):
                 raise InputError(
-                    "learning curve", f"shape of {field}", np.shape(values),
+                    "learning curve",
+                    f"shape of {field}",
+                    np.shape(values),
                     f"{np.shape(self.samples)}, one error per number of samples",
-                )  # fmt: skip
+                )
 
 
 def learning_curves(
@@ -85,9 +87,15 @@ def learning_curves(
         if goal is not None:
             ax.axhline(goal, color=INK, linewidth=0.9, linestyle=(0, (4, 3)), zorder=1)
             ax.annotate(
-                f"{goal:g} N m", (1.0, goal), xycoords=("axes fraction", "data"),
-                xytext=(-2, 3), textcoords="offset points", ha="right", fontsize=8, color=INK,
-            )  # fmt: skip
+                f"{goal:g} N m",
+                (1.0, goal),
+                xycoords=("axes fraction", "data"),
+                xytext=(-2, 3),
+                textcoords="offset points",
+                ha="right",
+                fontsize=8,
+                color=INK,
+            )
         if logarithmic:
             _logarithmic(ax, curves)
         else:
@@ -121,9 +129,11 @@ def curve_panels(robots: Mapping[str, Sequence[LearningCurve]]) -> Figure:
 
 
 def _draw(
-    ax: Axes, curves: Sequence[LearningCurve], per_tick: int,
+    ax: Axes,
+    curves: Sequence[LearningCurve],
+    per_tick: int,
     published: Sequence[tuple[float, float]],
-) -> None:  # fmt: skip
+) -> None:
     for index, curve in enumerate(curves):
         colour = CYCLE[index % len(CYCLE)]
         x = np.asarray(curve.samples, dtype=float) / per_tick
@@ -134,9 +144,15 @@ def _draw(
     if published:
         x, y = np.array(published, dtype=float).T
         ax.plot(
-            x / per_tick, y, "D", color=INK, markersize=4.5, markerfacecolor="none",
-            label="printed in the paper", zorder=5,
-        )  # fmt: skip
+            x / per_tick,
+            y,
+            "D",
+            color=INK,
+            markersize=4.5,
+            markerfacecolor="none",
+            label="printed in the paper",
+            zorder=5,
+        )
 
 
 def _logarithmic(ax: Axes, curves: Sequence[LearningCurve]) -> None:

@@ -103,9 +103,14 @@ def _gravity_frame(ax: Axes, reach: float) -> None:
 def _arm(ax: Axes, chain: Array, colour: str, stable: bool) -> None:
     style = "-" if stable else (0, (3, 1.5))
     ax.plot(
-        chain[:, 0], chain[:, 1], color=colour, linewidth=1.8 if stable else 1.2,
-        linestyle=style, solid_capstyle="round", zorder=2,
-    )  # fmt: skip
+        chain[:, 0],
+        chain[:, 1],
+        color=colour,
+        linewidth=1.8 if stable else 1.2,
+        linestyle=style,
+        solid_capstyle="round",
+        zorder=2,
+    )
     ax.plot(*chain[1:-1].T, "o", color=INK, markersize=3.2, zorder=3)
     ax.plot(*chain[0], "s", color=INK, markersize=5.0, zorder=4)
     face = colour if stable else PAPER
@@ -128,9 +133,16 @@ def _number(ax: Axes, chains: Array, texts: Sequence[str], scale: float) -> None
         places = tips + away * np.maximum(1.0, 0.8 * LABEL_DISTANCE / np.maximum(size, 1e-9))
     for tip, place, text in zip(chains[:, -1], places - tips, texts, strict=True):
         ax.annotate(
-            text, tip, xytext=tuple(place), textcoords="offset points",
-            ha="center", va="center", color=INK, fontsize=8.5, zorder=5,
-        )  # fmt: skip
+            text,
+            tip,
+            xytext=tuple(place),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            color=INK,
+            fontsize=8.5,
+            zorder=5,
+        )
 
 
 def _unit(vectors: Array) -> Array:
@@ -177,24 +189,39 @@ def level_set_map(
             name = ("−" if sign < 0 else "+") + subscript("\\tau", component + 1)
             path = _broken(rows(line, 2, what="curve"))
             ax.plot(
-                path[:, 0], path[:, 1], color=colour, linewidth=1.3,
+                path[:, 0],
+                path[:, 1],
+                color=colour,
+                linewidth=1.3,
                 linestyle="-" if sign > 0 else (0, (4, 2)),
                 label=None if (component, sign) in seen else name,
-            )  # fmt: skip
+            )
             seen.add((component, sign))
         counts: dict[int, int] = {}
         for i, (point, index) in enumerate(zip(wrapped, member, strict=True)):
             counts[index] = counts.get(index, 0) + 1
             colour = (BLUE, RED)[index % 2] if index < 2 else CYCLE[index % len(CYCLE)]
             ax.plot(
-                *point, "o", color=colour, markersize=6.0, zorder=4,
-                markerfacecolor=colour if steady[i] else PAPER, markeredgewidth=1.3,
-            )  # fmt: skip
+                *point,
+                "o",
+                color=colour,
+                markersize=6.0,
+                zorder=4,
+                markerfacecolor=colour if steady[i] else PAPER,
+                markeredgewidth=1.3,
+            )
             text = str(counts[index]) if labels is None else labels[i]
             ax.annotate(
-                text, point, xytext=(6, 5), textcoords="offset points", color=colour,
-                fontsize=8.5, fontweight="bold", zorder=5, path_effects=halo(),
-            )  # fmt: skip
+                text,
+                point,
+                xytext=(6, 5),
+                textcoords="offset points",
+                color=colour,
+                fontsize=8.5,
+                fontweight="bold",
+                zorder=5,
+                path_effects=halo(),
+            )
         ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), handlelength=2.2, borderaxespad=0.2)
         return figure
 

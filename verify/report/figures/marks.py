@@ -18,9 +18,15 @@ Array = NDArray[np.float64]
 def key(ax: Axes, handles: Sequence[Artist]) -> None:
     """Put a key above the axes."""
     ax.legend(
-        handles=list(handles), loc="lower left", bbox_to_anchor=(-0.02, 1.0), ncols=len(handles),
-        borderaxespad=0.2, handletextpad=0.5, columnspacing=1.2, handlelength=1.2,
-    )  # fmt: skip
+        handles=list(handles),
+        loc="lower left",
+        bbox_to_anchor=(-0.02, 1.0),
+        ncols=len(handles),
+        borderaxespad=0.2,
+        handletextpad=0.5,
+        columnspacing=1.2,
+        handlelength=1.2,
+    )
 
 
 def mark(marker: str, colour: str, label: str) -> Line2D:

@@ -85,9 +85,11 @@ def torque_profiles(
         for trace in traces:
             for joint in shown:
                 ax.plot(
-                    start + trace.times, trace.torques[:, joint], color=JOINTS[joint % len(JOINTS)],
+                    start + trace.times,
+                    trace.torques[:, joint],
+                    color=JOINTS[joint % len(JOINTS)],
                     label=subscript("\\tau", joint + 1) if start == 0.0 else None,
-                )  # fmt: skip
+                )
             start += float(trace.times[-1])
             ax.axvline(start, color=FAINT, linewidth=0.7, linestyle=(0, (2, 3)), zorder=0)
         ax.set_xlim(0.0, max(start, 1e-9))
@@ -121,9 +123,11 @@ def joint_trajectories(
         for trace in traces:
             for joint in shown:
                 ax.plot(
-                    start + trace.times, trace.q[:, joint], color=JOINTS[joint % len(JOINTS)],
+                    start + trace.times,
+                    trace.q[:, joint],
+                    color=JOINTS[joint % len(JOINTS)],
                     label=subscript("q", joint + 1) if start == 0.0 else None,
-                )  # fmt: skip
+                )
             start += float(trace.times[-1])
             settled = trace.outcome == "settled"
             last = trace.q[-1, shown]
@@ -184,18 +188,25 @@ def static_torque_map(
         for ax, (i, j) in zip(axes, pairs, strict=True):
             if triangles is not None and n == 2:
                 cells = PolyCollection(
-                    list(np.asarray(triangles, dtype=float)), facecolors=BLUE, alpha=0.16,
+                    list(np.asarray(triangles, dtype=float)),
+                    facecolors=BLUE,
+                    alpha=0.16,
                     linewidths=0,
-                )  # fmt: skip
+                )
                 ax.add_collection(cells)
             if boundary is not None and n == 2:
                 ax.plot(*rows(boundary, 2, what="boundary").T, color=INK, linewidth=1.0)
             points(ax, good[:, i], good[:, j], color=BLUE, s=7)
             if len(bad):
                 ax.plot(
-                    bad[:, i], bad[:, j], "x", color=RED, markersize=4, markeredgewidth=0.9,
+                    bad[:, i],
+                    bad[:, j],
+                    "x",
+                    color=RED,
+                    markersize=4,
+                    markeredgewidth=0.9,
                     rasterized=len(bad) > 1500,
-                )  # fmt: skip
+                )
             ax.set_xlabel(subscript("\\tau", i + 1) + " [N m]")
             ax.set_ylabel(subscript("\\tau", j + 1) + " [N m]")
             ax.grid(True)
@@ -215,6 +226,10 @@ def _legend(ax: Axes, columns: int) -> None:
     if not columns:
         return
     ax.legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.1,
-        handlelength=1.4, columnspacing=1.2,
-    )  # fmt: skip
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        ncols=columns,
+        borderaxespad=0.1,
+        handlelength=1.4,
+        columnspacing=1.2,
+    )

@@ -126,9 +126,23 @@ def solve_definite(matrix, right):
 
 @compiled(error_model="numpy")
 def fill(
-    parents, rotations, levers, gains, directions, q, whitening, extra, free_turns, free_levers,
-    free_gains, rows, torque, turned, leant, stiffness,
-):  # fmt: skip
+    parents,
+    rotations,
+    levers,
+    gains,
+    directions,
+    q,
+    whitening,
+    extra,
+    free_turns,
+    free_levers,
+    free_gains,
+    rows,
+    torque,
+    turned,
+    leant,
+    stiffness,
+):
     """Whitened derivatives by all free unknowns, into ``rows`` (m n, nonlinear + linear).
 
     Order: turns, gains; levers, coefficients.
@@ -206,9 +220,21 @@ def solved(design, target):
 
 @compiled(error_model="numpy")
 def levenberg_marquardt(
-    parents, rotations, gains, q, torques, whitening, extra, free_turns, free_levers, free_gains,
-    canonical, iterations, progress, enough,
-):  # fmt: skip
+    parents,
+    rotations,
+    gains,
+    q,
+    torques,
+    whitening,
+    extra,
+    free_turns,
+    free_levers,
+    free_gains,
+    canonical,
+    iterations,
+    progress,
+    enough,
+):
     """Minimise the sum of squares of whitened torque errors from one start.
 
     Parameters
@@ -247,9 +273,23 @@ def levenberg_marquardt(
     target = whitened(torques, whitening)
     set_directions(rotations, canonical, directions)
     fill(
-        parents, rotations, levers, gains, directions, q, whitening, extra, free_turns,
-        free_levers, free_gains, rows, torque, turned, leant, stiffness,
-    )  # fmt: skip
+        parents,
+        rotations,
+        levers,
+        gains,
+        directions,
+        q,
+        whitening,
+        extra,
+        free_turns,
+        free_levers,
+        free_gains,
+        rows,
+        torque,
+        turned,
+        leant,
+        stiffness,
+    )
     linear, rest = solved(np.ascontiguousarray(rows[:, curved:]), target)
     cost = rest @ rest
     damping, taken = 1e-2, 0
@@ -264,9 +304,23 @@ def levenberg_marquardt(
                 c += 1
         set_directions(rotations, canonical, directions)
         fill(
-            parents, rotations, levers, gains, directions, q, whitening, extra, free_turns,
-            free_levers, free_gains, rows, torque, turned, leant, stiffness,
-        )  # fmt: skip
+            parents,
+            rotations,
+            levers,
+            gains,
+            directions,
+            q,
+            whitening,
+            extra,
+            free_turns,
+            free_levers,
+            free_gains,
+            rows,
+            torque,
+            turned,
+            leant,
+            stiffness,
+        )
         normal = gram(rows)
         downhill = against(rows, rest)[:curved].copy()
         reduced = normal[:curved, :curved].copy()

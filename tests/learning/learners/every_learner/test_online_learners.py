@@ -74,11 +74,15 @@ def test_learns_on_an_arm_that_offers_nothing_but_the_protocol(make):
     static_torques.add(samples(rng, 300)[1])
     learner = make()
     exploration = ConstrainedDirectionSampling(
-        Bare(SimulatedArm(load_robot("2r"))), learner, rng, static_torques=static_torques,
-        domain=BelowTheHorizontal(), torque_range=[24.5, 6.1],
+        Bare(SimulatedArm(load_robot("2r"))),
+        learner,
+        rng,
+        static_torques=static_torques,
+        domain=BelowTheHorizontal(),
+        torque_range=[24.5, 6.1],
         home_torque=planar_arm.torque([-np.pi / 4, -np.pi / 4])[0],
         settings=ExplorationSettings(noise=0.01),
-    )  # fmt: skip
+    )
     steps = list(exploration.steps(250))
     settled = [s.outcome for s in steps if s.outcome.kind is OutcomeKind.SETTLED]
     assert len(settled) > 240

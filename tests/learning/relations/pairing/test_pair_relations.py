@@ -66,9 +66,13 @@ def test_half_a_degree_of_noise(name, torques):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "torques", "degrees", "seeds", "least"),
-    [("2r", 6, 0.0, 100, 98), ("3r", 4, 0.0, 100, 98), ("2r", 12, 0.5, 100, 95),
-     ("3r", 8, 0.5, 100, 95)],
-)  # fmt: skip
+    [
+        ("2r", 6, 0.0, 100, 98),
+        ("3r", 4, 0.0, 100, 98),
+        ("2r", 12, 0.5, 100, 95),
+        ("3r", 8, 0.5, 100, 95),
+    ],
+)
 def test_a_hundred_seeds(name, torques, degrees, seeds, least):
     potential, group = known_potential(name)
     right = false = claimed = 0

@@ -56,8 +56,12 @@ def test_any_joint_order_will_do(model, seed):
     columns = [pin.rnea(model, data, q, 0 * v, e) for e in np.eye(model.nv)]
     mass = np.array(columns) - pin.computeGeneralizedGravity(model, data, q)
     assert close(ours.mass_matrix(q), mass)
-    for name, arguments in (("mass_matrix", (q,)), ("bias", (q, v)), ("stiffness", (q,)),
-                            ("gravity_torque", (q,))):  # fmt: skip
+    for name, arguments in (
+        ("mass_matrix", (q,)),
+        ("bias", (q, v)),
+        ("stiffness", (q,)),
+        ("gravity_torque", (q,)),
+    ):
         assert close(getattr(ours, name)(*arguments), getattr(reference, name)(*arguments))
 
 

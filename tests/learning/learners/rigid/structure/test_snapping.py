@@ -39,8 +39,10 @@ def test_right_angles_of_an_arm_are_found_in_noise():
         right += bool(np.abs(twists - [0, 90, 0, 0]).max() < 1e-12)
         assert found.p_value > 1e-6
         q = random_poses(np.random.default_rng(99), 200, 6)
-        error = [np.sqrt(np.mean((c.torque(q) - gravity.torque(q)) ** 2))
-                 for c in (found.chain, learner.chain_)]  # fmt: skip
+        error = [
+            np.sqrt(np.mean((c.torque(q) - gravity.torque(q)) ** 2))
+            for c in (found.chain, learner.chain_)
+        ]
         better += error[0] < error[1]
     assert better >= 5
     assert right >= 5
