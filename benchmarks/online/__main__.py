@@ -23,10 +23,12 @@ from benchmarks.online.comparison import comparison_rows
 from benchmarks.online.counted import three_joint_rows, two_joint_rows
 from benchmarks.online.literal import literal_rows, mode_rows
 from benchmarks.online.noise import noise_rows
-from benchmarks.online.page import put_into_page
 from benchmarks.online.speed import speed_rows
 from benchmarks.online.store import Store
 from benchmarks.online.table import Row, table
+from benchmarks.shared.document import write_between
+
+PAGE = Path(__file__).parents[2] / "docs" / "online.md"
 
 ROWS: dict[str, Callable[[argparse.Namespace], Iterator[Row]]] = {
     "literal": literal_rows,
@@ -60,7 +62,7 @@ def main() -> int:
     text = table(rows)
     print(text)
     if options.write:
-        put_into_page(text)
+        write_between(PAGE, "measured", text)
     return 0
 
 

@@ -25,9 +25,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 from benchmarks.relations.rows import SECONDS, Case, Row, run
+from benchmarks.shared.document import write_between
 
 PAGE = Path(__file__).parents[2] / "docs" / "relations.md"
-BEGIN, END = "<!-- begin: python -m benchmarks.relations --write -->", "<!-- end -->"
 
 NOISY = "95 % of seeds, precision 0.99"
 CASES = (
@@ -84,7 +84,7 @@ def main(arguments: list[str] | None = None) -> int:
     else:
         print(table(rows))
     if options.write:
-        PAGE.write_text(with_table(PAGE.read_text(), table(rows)))
+        write_between(PAGE, "python -m benchmarks.relations --write", table(rows))
     return int(any(row.holds is False for row in rows))
 
 
@@ -100,19 +100,6 @@ def table(rows: list[Row]) -> str:
         f"{text}\n\nFalse relations in all {runs} runs: {false} of {claimed} claimed{error}. "
         f"{platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}."
     )
-
-
-def with_table(page: str, rows: str) -> str:
-    r"""Return a page with another table between its marks.
-
-    Examples
-    --------
-    >>> with_table(f"before {BEGIN} old {END} after", "new").split("\n")
-    ['before <!-- begin: python -m benchmarks.relations --write -->', 'new', '<!-- end --> after']
-    """
-    before, _, rest = page.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    return f"{before}{BEGIN}\n{rows}\n{END}{after}"
 
 
 def _cells(row: Row) -> list[str]:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
 from isotorque.learning.files.software_versions import software_versions
 from isotorque.paper.experiments.experiments import experiment
 from isotorque.paper.experiments.measured import Effort
 from isotorque.plain import plain
+from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.robots.load_robot import load_robot
 
 
@@ -43,7 +42,7 @@ def perform(piece: Piece) -> dict[str, Any]:
     The same piece gives the same result wherever it is done (times apart).
     """
     chosen = experiment(piece.experiment)
-    with threadpool_limits(1):  # arrays are small: threads would only wait for each other
+    with single_thread():  # arrays are small: threads would only wait for each other
         measured = chosen.measure(load_robot(chosen.robot), piece.seed, Effort(piece.share))
     return {
         "numbers": plain(measured.numbers),

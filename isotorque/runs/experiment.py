@@ -26,11 +26,11 @@ from isotorque.learning.scheme import Discovery, LearnerFactory, Scheme, SchemeS
 from isotorque.learning.simulator.settings import PhysicsMode
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
-from isotorque.runs.options.robot_copy import keep_robot_file
+from isotorque.runs.options.recorded_robot import keep_robot_file
 from isotorque.runs.options.run_options import LATTICE, RunOptions
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
-from isotorque.single_thread import single_thread
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup, check_listable
 from isotorque.symbolic.robots.load_robot import Robot, load_robot

@@ -26,10 +26,10 @@ from isotorque.runs.experiment import (
 )
 from isotorque.runs.learned_model import LearnedModel, model_of_run
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
-from isotorque.runs.options.robot_copy import keep_robot_file
+from isotorque.runs.options.recorded_robot import keep_robot_file
 from isotorque.runs.options.run_options import RunOptions
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
-from isotorque.single_thread import single_thread
+from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.robots.load_robot import Robot

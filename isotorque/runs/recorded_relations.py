@@ -13,8 +13,7 @@ from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
 from isotorque.learning.relations.reachable_relation import is_executable
 from isotorque.learning.relations.testing.judge_candidates import JudgedCandidate
 from isotorque.runs.experiment import RunOutcome
-from isotorque.runs.options.recorded_robot import as_recorded
-from isotorque.runs.options.robot_copy import recorded_robot
+from isotorque.runs.options.recorded_robot import as_recorded, recorded_robot
 from isotorque.runs.stages import DATABASE
 from isotorque.symbolic.common.files import write_whole
 from isotorque.symbolic.common.robot_options import RobotOptions

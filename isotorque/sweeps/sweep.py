@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from isotorque.learning.files.software_versions import software_versions
 from isotorque.paper.finished_work import Parts
@@ -22,6 +21,7 @@ from isotorque.runs.options.run_options import LATTICE
 from isotorque.sweeps.sweep_table import SweepRun, told_options
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.files import output_directory, write_whole
+from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.verify.report.figures.learning_curves import LearningCurve, curve_panels
 from isotorque.verify.report.figures.style import save_figure
 
@@ -71,7 +71,7 @@ def perform_run(run: SweepRun) -> dict[str, Any]:
     What the robot turns out to be unfit for is returned as well: other runs go on.
     """
     try:
-        with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
+        with tempfile.TemporaryDirectory() as folder, single_thread():
             found = _learned(run, Path(folder))
     except InputError as error:
         found = {"refused": str(error)}

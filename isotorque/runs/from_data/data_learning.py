@@ -27,14 +27,13 @@ from isotorque.runs.from_data.data_remarks import (
 from isotorque.runs.lattice_learning import fitted_with_curve
 from isotorque.runs.learned_model import LearnedModel
 from isotorque.runs.learning_curve import DenseTest
-from isotorque.runs.options.recorded_robot import as_recorded
-from isotorque.runs.options.robot_copy import keep_robot_file
+from isotorque.runs.options.recorded_robot import as_recorded, keep_robot_file
 from isotorque.runs.options.run_options import check_symmetries
 from isotorque.runs.stages import DATABASE
-from isotorque.single_thread import single_thread
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.common.files import output_directory
 from isotorque.symbolic.common.robot_options import RobotOptions
+from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import Robot, load_robot
 from isotorque.verify.models.measured_torques import Disagreement, disagreement

@@ -23,9 +23,9 @@ from isotorque.learning.learners.rigid.fitting.noise_estimate import (
     with_estimated_noise,
 )
 from isotorque.learning.learners.rigid.fitting.start_search import StartSearch
-from isotorque.learning.learners.rigid.one_thread import one_thread
 from isotorque.learning.learners.rigid.planning.information import identifiable_count, probe_poses
 from isotorque.learning.learners.rigid.planning.poses_needed import most_parameters, poses_needed
+from isotorque.symbolic.common.single_thread import single_thread
 
 EXACT = 1e-9
 """Residuals below, relative to the largest torque, are rounding (of a settling simulator too)."""
@@ -54,7 +54,7 @@ OPEN_SHARE = 1.0
 """A torque whose standard error elsewhere is as large as itself (both RMS) is not known."""
 
 
-@one_thread()
+@single_thread()
 def fit_chain(
     samples: ChainSamples,
     model: ChainModel,

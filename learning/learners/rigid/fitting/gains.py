@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit, fit_at
 from isotorque.learning.learners.rigid.fitting.chain_search import minimise, polished
-from isotorque.learning.learners.rigid.one_thread import one_thread
 from isotorque.learning.learners.rigid.planning.information import Information, probe_poses
+from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class GainGroup:
     scale_known: bool
 
 
-@one_thread()
+@single_thread()
 def gain_groups(fit: ChainFit) -> tuple[GainGroup, ...]:
     """Groups of the joints with unknown gains.
 
@@ -78,7 +78,7 @@ def gain_groups(fit: ChainFit) -> tuple[GainGroup, ...]:
     )
 
 
-@one_thread()
+@single_thread()
 def with_fixed_scales(fit: ChainFit, groups: tuple[GainGroup, ...]) -> ChainFit:
     """The same torques, gains of each group relative to that of its most loaded joint."""
     open_groups = [g for g in groups if not g.scale_known]

@@ -12,8 +12,8 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     raw_directions,
 )
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
-from isotorque.learning.learners.rigid.one_thread import one_thread
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -42,7 +42,7 @@ class PosePlan:
     expected: Array
 
 
-@one_thread()
+@single_thread()
 def plan_poses(
     chain: ChainParameters,
     free: Mask,

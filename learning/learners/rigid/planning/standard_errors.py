@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
 from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
 from isotorque.learning.learners.rigid.fitting.chain_search import minimise
-from isotorque.learning.learners.rigid.one_thread import one_thread
+from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ class TorqueErrors:
         return np.maximum(linear, fit.spread * np.sqrt(square / len(replicas)))
 
     @cached_property
-    @one_thread()
+    @single_thread()
     def replicas(self) -> list[ChainParameters]:
         """Chains fitted to repeated experiments; none where the samples are exact."""
         fit = self._fit

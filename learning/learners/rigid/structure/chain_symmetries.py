@@ -13,10 +13,10 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     ChainParameters,
     raw_directions,
 )
-from isotorque.learning.learners.rigid.one_thread import one_thread
 from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
 from isotorque.learning.learners.rigid.structure.expansion import expanded
 from isotorque.learning.learners.rigid.structure.snapping import SnappedChain
+from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
@@ -85,7 +85,7 @@ class ChainSymmetries:
         )
 
 
-@one_thread()
+@single_thread()
 def chain_symmetries(
     fit: ChainFit, errors: TorqueErrors, snapped: SnappedChain, tolerance: float = 0.0
 ) -> ChainSymmetries:

@@ -18,9 +18,9 @@ from isotorque.learning.learners.rigid.fitting.chain_search import (
     minimise,
 )
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
-from isotorque.learning.learners.rigid.one_thread import one_thread
 from isotorque.learning.learners.rigid.planning.information import Information
 from isotorque.learning.learners.rigid.structure.canonical_form import RIGHT_ANGLE, CanonicalForm
+from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -109,7 +109,7 @@ class SnappedChain:
         )
 
 
-@one_thread()
+@single_thread()
 def snapped(fit: ChainFit, level: float = LEVEL) -> SnappedChain:
     """Set angles to multiples of a right angle and levers to zero where samples allow it.
 
