@@ -56,7 +56,7 @@ class SymmetryCoordinates:
     A configuration q becomes ``y = B q`` on the torus (free directions drop out), and distances
     are measured as ``|L dy|`` where ``L^T L`` is the average of ``A_sat^T A_sat`` over the group,
     scaled to determinant 1: every relation keeps this distance, so a symmetric copy of a sample
-    is as far from its neighbours as the sample itself (theory.md section 3).
+    is as far from its neighbours as the sample itself (docs/theory.md).
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ class SymmetryRelation:
     Y : (n,) array
         Signs +1 or -1 of the torques.
     basis : (r, n) int array, optional
-        Rows B such that the torque depends on q only through y = B q (theory.md, section 2);
+        Rows B such that the torque depends on q only through y = B q (docs/theory.md);
         the identity by default. ``A`` must map y to y: B A = A_sat B.
     exact : bool
         Whether the relation is proved (with an exact d of which ``d`` is the rounding).

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.single_thread import single_thread
-from isotorque.symbolic.groups.product_group import ProductGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
@@ -22,6 +21,7 @@ from isotorque.symbolic.symmetries.exact_symmetries import (
     specialised,
 )
 from isotorque.symbolic.symmetries.frequency_support import FrequencySupport
+from isotorque.symbolic.symmetries.product_group import ProductGroup
 from isotorque.symbolic.symmetries.residual_bound import residual_bound
 from isotorque.symbolic.symmetries.reynolds_average import joint_offsets, symmetric_part_error
 

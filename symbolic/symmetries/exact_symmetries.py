@@ -11,8 +11,10 @@ from isotorque.symbolic.groups.block_group import BlockGroup
 from isotorque.symbolic.groups.product_group import ProductGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
+from isotorque.symbolic.symmetries.block_group import BlockGroup
 from isotorque.symbolic.symmetries.frequency_support import FrequencySupport, amplitude_classes
 from isotorque.symbolic.symmetries.phase_proof import PhaseProof
+from isotorque.symbolic.symmetries.product_group import ProductGroup
 
 RELATIVE = 1e-12
 """Float coefficients closer than this, relative to the largest, count as equal."""

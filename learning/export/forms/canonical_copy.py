@@ -33,7 +33,7 @@ class CanonicalCopy:
 
     Notes
     -----
-    `orbit_representatives` walks from cell to cell; here all images of the box of wrapped
+    `canonical_representatives` walks from cell to cell; here all images of the box of wrapped
     coordinates that touch the domain are listed once, so a controller does the same work for every
     q. On the boundary of the domain, where several copies are in it, another one may be taken than
     there.

@@ -78,14 +78,13 @@ class LocalLinearMap(TorqueRegressor, SavedLearner):
     -----
     Prefer it where the torque is more than rigid gravity, where samples never stop coming and
     each may cost microseconds at most: the cost of an update does not depend on the number of
-    prototypes. Where samples are dear, ``TiedLeastSquares`` needs some 20 times fewer.
+    prototypes. Where samples are dear, `RecursiveLeastSquares` needs some 20 times fewer.
 
     Angles are periodic. With a group, coordinates are y = B q and distances the group's
-    (``SymmetryCoordinates``); without one, Eq. 17-22 hold as printed in q. Readings of the paper
-    (learning.md section 2): slopes are W = J d, and J includes the derivative of the
-    responsibilities; the prototype is added before the gradient step; the test of Eq. 22 is made
-    for every symmetric copy. A query beyond the reach of all kernels is answered by the nearest
-    local functions.
+    (``SymmetryCoordinates``); without one, Eq. 17-22 hold as printed in q. Readings of the paper:
+    slopes are W = J d, and J includes the derivative of the responsibilities; the prototype is
+    added before the gradient step; the test of Eq. 22 is made for every symmetric copy. A query
+    beyond the reach of all kernels is answered by the nearest local functions.
 
     References
     ----------

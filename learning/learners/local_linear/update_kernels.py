@@ -1,6 +1,6 @@
 """Compiled update of the local linear map: insert prototypes, descend the error (Eq. 19-22).
 
-Arguments as in ``local_linear_kernels``.
+Arguments as in `predict_kernels`.
 """
 
 from __future__ import annotations

@@ -125,8 +125,8 @@ def potential_basis(coordinates: SymmetryCoordinates, frequencies: Integers) -> 
     Notes
     -----
     U itself need not be symmetric: with k = B^T kappa a relation must satisfy ``A^T k = s_k Y k``
-    and ``C_{s_k Y k} = s_k C_k exp(i k.d)`` with a sign of its own for each k (theory.md section
-    2); other frequencies must be absent.
+    and ``C_{s_k Y k} = s_k C_k exp(i k.d)`` with a sign of its own for each k; other
+    frequencies must be absent (docs/theory.md, "Primary symmetries: the complete list").
     """
     m = len(frequencies)
     k = frequencies @ np.rint(coordinates.basis).astype(np.int64)

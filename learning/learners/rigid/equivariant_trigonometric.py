@@ -59,7 +59,7 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
     Notes
     -----
     Parametric: gravity of a rigid arm with revolute joints *is* such a polynomial with
-    frequencies in {-1, 0, 1}^n (theory.md section 1), so it contains the truth and is exact to
+    frequencies in {-1, 0, 1}^n (docs/theory.md), so it contains the truth and is exact to
     rounding from as many equations as coefficients: on the 2R arm with its group one sample (a
     potential) or two (by joints), on the 3R one or three. Prefer it where kinematics and masses
     are not known but the arm is rigid. Springs, cables and bending are not in it, and its

@@ -52,11 +52,12 @@ def fit_group(fit: FittedPotential, group: CandidateGroup) -> GroupFit:
 
     Notes
     -----
-    Potentials with the given symmetries are the image of the Reynolds average (theory.md, section
-    2). A finite group allows no other change of its offsets than a shift of the origin,
-    d_i -> d_i - (I - A_i) x, since H^1(G, R^r) = 0. Coefficients in the image and x are fitted
-    together to the unrestricted coefficients with their covariance (Gauss-Newton); the remaining
-    misfit is chi-square distributed, or F where the noise level was estimated.
+    Potentials with the given symmetries are the image of the Reynolds average (docs/theory.md,
+    "Primary symmetries: the complete list"). A finite group allows no other change of its offsets
+    than a shift of the origin, d_i -> d_i - (I - A_i) x, since H^1(G, R^r) = 0. Coefficients in the
+    image and x are fitted together to the unrestricted coefficients with their covariance
+    (Gauss-Newton); the remaining misfit is chi-square distributed, or F where the noise level was
+    estimated.
     """
     pull_backs = PullBacks(fit.frequencies, group)
     coordinates, average = pull_backs.coordinates, pull_backs.average()

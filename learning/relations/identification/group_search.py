@@ -36,7 +36,7 @@ def candidate_relations(
 
     Notes
     -----
-    Signs and linear parts are enumerated exactly (theory.md, section 2) as if all kept amplitudes
+    Signs and linear parts are enumerated exactly (docs/theory.md) as if all kept amplitudes
     were equal; offsets solve the phase congruences on a basis of the lattice and are then
     improved on all kept frequencies, weighted by how well their phases are known.
     """

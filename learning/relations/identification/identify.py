@@ -84,12 +84,12 @@ def identify(
 
     Notes
     -----
-    One potential is fitted to all samples (theory.md, section 5). Frequencies whose coefficients
-    differ significantly from zero give candidate relations; the largest closed set of them whose
-    symmetric potential explains the data as well as an unrestricted one (F or chi-square test)
-    is the group. It is claimed only if the data would have shown a violation: the torque error
-    that every relation may have at three standard errors must be small. Offsets and their errors
-    come from the symmetric fit, so they compose exactly.
+    One potential is fitted to all samples (docs/theory.md, "Identification"). Frequencies whose
+    coefficients differ significantly from zero give candidate relations; the largest closed set of
+    them whose symmetric potential explains the data as well as an unrestricted one (F or chi-square
+    test) is the group. It is claimed only if the data would have shown a violation: the torque
+    error that every relation may have at three standard errors must be small. Offsets and their
+    errors come from the symmetric fit, so they compose exactly.
 
     Joints whose torque is zero in all samples are left out, after a check that the torque does not
     depend on them.

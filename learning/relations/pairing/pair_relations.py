@@ -66,10 +66,10 @@ def pair_relations(
     Notes
     -----
     This is the paper's section 4.2 without knowing which configurations belong together: integer
-    relations are voted for (`row_votes`), judged against chance over distinct torques
-    (`false_alarms`), only those that close to a group are kept, and all offsets are refined
-    together (`relation_group`). Relations that no pair shows cannot be found; identification finds
-    them.
+    relations are voted for (`hough_transform`), judged against chance over distinct torques
+    (`a_contrario_test`), only those that close to a group are kept, and all offsets are refined
+    together (`orbit_refinement`). Relations that no pair shows cannot be found; identification
+    finds them.
 
     Joints whose torque is always zero are left out. Samples with a torque component below 2 % of
     the joint's largest are not used: its sign means nothing.

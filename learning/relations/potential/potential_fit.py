@@ -192,7 +192,7 @@ def fit_potential(
 
     Notes
     -----
-    Every sample gives n equations for the 2 m coefficients (theory.md, section 5) and a constant
+    Every sample gives n equations for the 2 m coefficients (docs/theory.md) and a constant
     torque for each joint: a cable that pulls, friction that always points one way, an amplifier's
     zero; left out, it would bend the coefficients and pass for noise. Samples too few for constants
     are enough where a potential alone explains them exactly, one equation more than coefficients:

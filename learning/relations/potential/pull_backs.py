@@ -27,7 +27,7 @@ class PullBacks:
     Notes
     -----
     Coefficients are real pairs (a, b), C = (a - i b) / 2. A potential has the symmetry exactly if
-    its coefficients are a fixed point (theory.md, section 2, condition ii); where A^T k is not
+    its coefficients are a fixed point (docs/theory.md); where A^T k is not
     +-Y k, or that frequency is not among the given ones, the image is zero.
     """
 

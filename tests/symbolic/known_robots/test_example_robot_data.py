@@ -129,7 +129,7 @@ def test_the_fingers_of_the_panda_are_refused_by_name():
 
 
 def test_the_xarm7_is_symmetric_only_when_snapped():
-    """theory.md, section 1: its file has right angles rounded to five digits."""
+    """Its file has right angles rounded to five digits."""
     snapped, raw = load_robot(ROBOTS / XARM7), load_robot(ROBOTS / XARM7, snap=False)
     assert [snap.joint for snap in snapped.snaps] == [f"joint{i}" for i in range(2, 8)]
     assert 1e-4 < snapped.snap_bound.max() < 1.5e-4
