@@ -13,7 +13,7 @@ OLDEST_TESTS := \
   tests/learning/learners/local_linear tests/learning/learners/memory tests/learning/simulator/compiled \
   tests/verify/report tests/isotorque/test_parallel.py tests/isotorque/cli/every_command/test_command_line.py \
   tests/isotorque/cli/test_help_text.py tests/isotorque/cli/test_robot_options.py \
-  tests/isotorque/cli/test_start.py isotorque/symbolic/common isotorque/symbolic/groups
+  tests/isotorque/cli/every_command/test_start.py isotorque/symbolic/common isotorque/symbolic/groups
 
 .PHONY: help demo test test-slow test-oldest dist lint bench docs clean
 .DEFAULT_GOAL := help

@@ -55,11 +55,13 @@ class WaveSearch:
         self._residual = residual
         self._turns = np.array(
             [
-                [[nearest(angle(f[j] * fmpq(1, 2**level))) for f in residual.frequencies]
-                 for j in range(residual.n)]
+                [
+                    [nearest(angle(f[j] * fmpq(1, 2**level))) for f in residual.frequencies]
+                    for j in range(residual.n)
+                ]
                 for level in LEVELS
             ]
-        )  # fmt: skip
+        )
         # multiples of 1/16 rad within half a turn: steps from there stay floats
         self.tried = np.random.default_rng(0).integers(-50, 51, (TRIED, residual.n)) / 16.0
         self._phases = residual.phases(self.tried)
