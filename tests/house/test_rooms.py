@@ -25,7 +25,9 @@ def has_place(test: Path) -> bool:
     """Whether a test mirrors a module or a package, or is in the folder of its kind."""
     module = Path(*test.parts[1:]).with_name(test.name.removeprefix("test_"))
     package = module.with_suffix("") / "__init__.py"
-    return test.parent in KINDS or (ROOT / module).is_file() or (ROOT / package).is_file()
+    beside = test.with_name(module.name)  # a program of the tests: its tests stand beside it
+    mirrored = any((ROOT / place).is_file() for place in (module, package, beside))
+    return mirrored or test.parent in KINDS
 
 
 def test_every_test_has_its_place():

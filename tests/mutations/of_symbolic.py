@@ -108,11 +108,11 @@ SYMMETRIES = (
         "a product is exact if both factors are",
     ),
     Mutation(
-        "symbolic/groups/product_group.py",
+        "symbolic/symmetries/product_group.py",
         "exact = all(part.exact for part in parts)",
         "exact = any(part.exact for part in parts)",
         (
-            "tests/symbolic/groups/test_product_group.py"
+            "tests/symbolic/symmetries/test_product_group.py"
             "::test_a_relation_is_exact_only_if_it_is_on_every_block",
         ),
         "a relation is exact if it is on every block",
@@ -264,10 +264,10 @@ LEVEL_SETS_AND_DOMAINS = (
         "a centre that a relation fixes makes no domain",
     ),
     Mutation(
-        "symbolic/domains/orbit_representatives.py",
+        "symbolic/domains/canonical_representatives.py",
         "keep = points[:, coordinate] >= best[ways[:, 0]] - SAME_COORDINATE",
         "keep = points[:, coordinate] >= -np.inf",
-        ("tests/symbolic/domains/test_orbit_representatives.py",),
+        ("tests/symbolic/domains/test_canonical_representatives.py",),
         "one representative per orbit, on the boundary too",
     ),
 )

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
-from isotorque.symbolic.symmetries.frequency_support import Support
+from isotorque.symbolic.symmetries.frequency_support import FrequencySupport
 from isotorque.symbolic.symmetries.phase_proof import PhaseProof
 from isotorque.verify.relations.exact_proof import prove_relation
 
@@ -55,7 +55,7 @@ def candidates(support, classes):
 def test_what_is_proved_here_is_proved_by_the_verifier_and_nothing_else(potential, seed):
     rng = np.random.default_rng(seed)
     numeric = potential.to_float()
-    support = Support.of(numeric, np.ones(len(numeric), dtype=bool))
+    support = FrequencySupport.of(numeric, np.ones(len(numeric), dtype=bool))
     proof = PhaseProof(potential, support, True)
     for Y, s, d_sat in candidates(support, np.zeros(len(support.K), dtype=np.int64)):
         holds = proof.holds(Y, s, d_sat)
@@ -75,7 +75,7 @@ def test_what_is_proved_here_is_proved_by_the_verifier_and_nothing_else(potentia
 @settings(max_examples=20)
 def test_nothing_is_proved_of_a_potential_that_has_more_terms(potential):
     numeric = potential.to_float()
-    support = Support.of(numeric, np.ones(len(numeric), dtype=bool))
+    support = FrequencySupport.of(numeric, np.ones(len(numeric), dtype=bool))
     partial = PhaseProof(potential, support, False)
     for Y, s, d_sat in candidates(support, np.zeros(len(support.K), dtype=np.int64)):
         assert not partial.holds(Y, s, d_sat)
@@ -88,7 +88,7 @@ def test_amplitudes_that_differ_by_less_than_a_float_are_unequal_even_if_product
     potential = TrigonometricPolynomial(
         K, np.array(amplitudes, dtype=object), np.array([fmpq(0)] * 4, dtype=object)
     )
-    support = Support.of(potential.to_float(), np.ones(4, dtype=bool))
+    support = FrequencySupport.of(potential.to_float(), np.ones(4, dtype=bool))
     proof = PhaseProof(potential, support, True)
     Y, s = np.array([1, -1, -1]), np.ones(4, dtype=np.int64)
     d_sat = np.zeros(len(support.B))
