@@ -19,7 +19,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 )
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
-from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus, NotAccepted
 from isotorque.learning.learners.rigid.fitting.joint_columns import Shape, columns_of
 from isotorque.learning.learners.rigid.fitting.start_search import StartSearch
 from isotorque.learning.learners.rigid.planning.poses_needed import most_parameters
@@ -37,8 +37,8 @@ from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
     checked_samples,
-    fitted,
     require,
+    require_fitted,
 )
 from isotorque.learning.learners.torque_score import TorqueRegressor
 from isotorque.learning.statistics.poses import group_poses
@@ -163,7 +163,7 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
         RMS of the processes' part at the samples over the RMS of the torque, of every joint.
     held_out_ : float
         RMS torque error at poses left out of the fit [N m]; NaN where none were.
-    verdict_ : Verdict
+    verdict_ : FitStatus
         Whether the model may be used; where not, ``remark_`` says why and ``predict`` refuses.
 
     Notes
@@ -230,7 +230,7 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
         rigid = RigidChain(
             self.parents, torque_noise=self.torque_noise, random_state=self.random_state
         ).fit(q, torque)
-        if rigid.verdict_ in (Verdict.ROUNDING, Verdict.TOO_FEW):
+        if rigid.verdict_ in (FitStatus.ROUNDING, FitStatus.TOO_FEW):
             if rigid.verdict_.accepted:
                 self.models_ = (ChainWithProcesses(rigid.chain_, ()),)
             return self._judged(rigid.verdict_, rigid.remark_)
@@ -243,19 +243,19 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
                 f"{needed - poses.count} more poses: {poses.count} different ones were given, "
                 f"{needed} are needed to tell what is beside a rigid chain"
             )
-            return self._judged(Verdict.TOO_FEW, remark)
+            return self._judged(FitStatus.TOO_FEW, remark)
         rng = np.random.default_rng(self.random_state)
         self.models_ = tuple(self._fitted(shapes, rigid.fit_.chain, rng) for shapes in VARIANTS)
         self.held_out_ = self._held_out_error(poses.label)
         size = float(np.sqrt(np.mean(torque**2)))
         if self.held_out_ <= HELD_OUT_SHARE * size:
-            return self._judged(Verdict.HELD_OUT, "")
+            return self._judged(FitStatus.HELD_OUT, "")
         remark = (
             f"chain and processes err by {self.held_out_:.3g} N m (RMS) at poses left out of the "
             f"fit, {HELD_OUT_SHARE * size:.3g} are accepted: more samples are needed, or the "
             "torque depends on more than the angles (friction)"
         )
-        return self._judged(Verdict.MISFIT, remark)
+        return self._judged(FitStatus.MISFIT, remark)
 
     def predict(self, X: Any) -> Array:
         """Measured torques (m, n) [N m] estimated for configurations (m, n) [rad].
@@ -290,27 +290,27 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
         NotAccepted
             If none was accepted.
         """
-        fitted(self)
+        require_fitted(self)
         if not self._verdict.accepted:
             raise NotAccepted(self._verdict, self._remark)
         return self.models_
 
     @property
-    def verdict_(self) -> Verdict:
+    def verdict_(self) -> FitStatus:
         """Whether the model may be used, and why."""
-        fitted(self)
+        require_fitted(self)
         return self._verdict
 
     @property
     def remark_(self) -> str:
         """What is missing or speaks against the model; empty where it is accepted."""
-        fitted(self)
+        require_fitted(self)
         return self._remark
 
     @property
     def process_share_(self) -> Array:
         """What part of the torque at the samples is the processes', (n,)."""
-        fitted(self)
+        require_fitted(self)
         beside = np.mean([model.beside(self._q) for model in self.models_], axis=0)
         size = np.sqrt(np.mean(self._torque**2, axis=0))
         loaded = size > WEIGHTLESS * size.max(initial=0.0)
@@ -320,7 +320,7 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
         _ = self.accepted_models
         return checked_configurations(self, X, first=False)
 
-    def _judged(self, verdict: Verdict, remark: str) -> RigidChainProcess:
+    def _judged(self, verdict: FitStatus, remark: str) -> RigidChainProcess:
         self._verdict, self._remark = verdict, remark
         return self
 
@@ -433,7 +433,7 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
                 model = replace(model, processes=tuple(processes))
             models.append(model)
         self.models_ = tuple(models)
-        self._judged(Verdict[state["verdict"]], str(state["remark"]))
+        self._judged(FitStatus[state["verdict"]], str(state["remark"]))
 
     def _check_parameters(self) -> None:
         require(self, "starts", self.starts == int(self.starts) >= 1, "a whole number >= 1")

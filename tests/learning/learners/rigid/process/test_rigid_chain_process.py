@@ -9,7 +9,7 @@ import pytest
 from isotorque.cli.main import status
 from isotorque.learning.files.csv_samples import StaticSamples, write_csv
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
-from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus, NotAccepted
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.symbolic.common.errors import InputError
@@ -50,7 +50,7 @@ def test_it_errs_a_fifth_of_what_the_chain_alone_does(robot):
     alone = RigidChain(unknown_offsets=True).fit(q, measured).fit_.chain
     error = learner.predict(fresh) - true
     assert rms(error) < 0.2 * rms(alone.torque(fresh) - true)
-    assert learner.verdict_ is Verdict.HELD_OUT
+    assert learner.verdict_ is FitStatus.HELD_OUT
     assert 0.4 < learner.held_out_ / rms(error) < 2.5
     # three standard errors hold nearly everywhere, and are not idle
     certain = learner.standard_error(fresh)
@@ -64,7 +64,7 @@ def test_it_errs_a_fifth_of_what_the_chain_alone_does(robot):
 def test_a_rigid_arm_is_a_chain_and_nothing_beside():
     q = poses("2r", 10)
     learner = RigidChainProcess().fit(q, gravity("2r").torque(q))
-    assert learner.verdict_ is Verdict.ROUNDING
+    assert learner.verdict_ is FitStatus.ROUNDING
     assert not learner.process_share_.any()
     fresh = poses("2r", 50, seed=1, reach=6.0)
     assert np.abs(learner.predict(fresh) - gravity("2r").torque(fresh)).max() < 1e-9
@@ -74,7 +74,7 @@ def test_a_rigid_arm_is_a_chain_and_nothing_beside():
 def test_too_few_poses_are_refused_with_how_many_are_missing():
     q = poses("ur5", 8)
     learner = RigidChainProcess(**QUICK).fit(q, with_cables("ur5", q))
-    assert learner.verdict_ is Verdict.TOO_FEW
+    assert learner.verdict_ is FitStatus.TOO_FEW
     assert "more poses" in learner.remark_
     with pytest.raises(NotAccepted, match="too few"):
         learner.predict(q)
@@ -85,7 +85,7 @@ def test_rows_of_one_pose_are_not_many_samples():
     measured = np.repeat(with_cables("2r", q), 20, axis=0)
     measured += 0.01 * np.random.default_rng(0).normal(size=measured.shape)
     learner = RigidChainProcess(**QUICK).fit(np.repeat(q, 20, axis=0), measured)
-    assert learner.verdict_ is Verdict.TOO_FEW
+    assert learner.verdict_ is FitStatus.TOO_FEW
 
 
 def test_torques_that_depend_on_more_than_the_angles_are_refused():
@@ -95,7 +95,7 @@ def test_torques_that_depend_on_more_than_the_angles_are_refused():
     learner = RigidChainProcess(**QUICK).fit(
         q, with_cables("2r", q) + 4.0 * rng.choice([-1.0, 1.0], q.shape)
     )
-    assert learner.verdict_ is Verdict.MISFIT
+    assert learner.verdict_ is FitStatus.MISFIT
     assert "friction" in learner.remark_
     with pytest.raises(NotAccepted):
         learner.standard_error(q)
