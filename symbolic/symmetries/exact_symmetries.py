@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from isotorque.symbolic.common.connected_components import connected_components
 from isotorque.symbolic.common.errors import InputError
-from isotorque.symbolic.groups.block_group import BlockGroup
-from isotorque.symbolic.groups.product_group import ProductGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.symbolic.symmetries.block_group import BlockGroup

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import isotorque
-from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted, Verdict
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus, NotAccepted
 from isotorque.learning.recordings.recording_error import RecordingError
 from isotorque.learning.relations.potential.errors_in_variables import Undetermined
 from isotorque.symbolic.common.errors import InputError, visible
@@ -22,7 +22,7 @@ RAISED = [
     RecordingError("run.sqlite", "robot", "2r", "3r"),
     GravityMismatch("arm", "elbow", 0.25, 1e-9),
     Undetermined("12 more samples"),
-    NotAccepted(Verdict.TOO_FEW, "2 more poses"),
+    NotAccepted(FitStatus.TOO_FEW, "2 more poses"),
 ]
 HIDDEN = st.characters(categories=["Cc", "Cf", "Zl", "Zp"])  # Cf holds what turns text around
 
