@@ -12,7 +12,7 @@ from isotorque.symbolic.common.angles import TURN
 from isotorque.symbolic.common.arrays import Floats, Integers
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.affine_map_index import RelationLookup
-from isotorque.symbolic.groups.direct_factors import DirectFactor, direct_factors
+from isotorque.symbolic.groups.direct_factors import TorusFactor, direct_factors
 from isotorque.symbolic.lattices.short_vectors import (
     covering_radius_bound,
     lattice_points_within,
@@ -192,7 +192,7 @@ class _Factor:
     corners: Floats
 
 
-def _factor(block: DirectFactor, center: Floats) -> _Factor:
+def _factor(block: TorusFactor, center: Floats) -> _Factor:
     """Build the cell of one block of coordinates."""
     r = len(center)
     if r > LARGEST_RANK:

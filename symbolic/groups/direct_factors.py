@@ -14,7 +14,7 @@ from isotorque.symbolic.groups.affine_map_index import SAME_EXACT_OFFSET
 
 
 @dataclass(frozen=True, eq=False)
-class DirectFactor:
+class TorusFactor:
     """A group acting on some of the coordinates by ``w -> A w + d`` modulo 2 pi.
 
     Attributes
@@ -30,7 +30,7 @@ class DirectFactor:
     d: Floats
 
 
-def direct_factors(A: Floats, d: Floats) -> list[DirectFactor]:
+def direct_factors(A: Floats, d: Floats) -> list[TorusFactor]:
     """Split a group into a direct product over blocks of coordinates, as fine as it goes.
 
     Parameters
@@ -40,7 +40,7 @@ def direct_factors(A: Floats, d: Floats) -> list[DirectFactor]:
 
     Returns
     -------
-    list of DirectFactor
+    list of TorusFactor
         One block with everything where the group is no such product.
 
     Notes
@@ -75,7 +75,7 @@ def direct_factors(A: Floats, d: Floats) -> list[DirectFactor]:
         here = np.sort(np.concatenate([parts[i] for i in group]))
         _, first = np.unique(kinds[:, group], axis=0, return_index=True)
         first.sort()
-        blocks.append(DirectFactor(here, A[np.ix_(first, here, here)], d[np.ix_(first, here)]))
+        blocks.append(TorusFactor(here, A[np.ix_(first, here, here)], d[np.ix_(first, here)]))
     return blocks
 
 
