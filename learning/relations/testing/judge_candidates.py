@@ -16,6 +16,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
     Undetermined,
 )
+from isotorque.learning.relations.potential.inactive_joints import NEVER_MOVED
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
 from isotorque.learning.relations.potential.pull_backs import PullBacks
 from isotorque.learning.relations.potential.samples_needed import samples_needed
@@ -97,7 +98,8 @@ def judge_candidates(
     Each candidate is one linear hypothesis on the coefficients of the fitted potential: they are a
     fixed point of the relation. It is a claim about the measured torque: one that flips a joint
     with a constant torque is contradicted too, and where the samples show torques that the form
-    has no term for (`lack_of_fit`), none is called consistent. The offset is taken as it is
+    has no term for (`lack_of_fit`), none is called consistent. One that carries a joint that never
+    moved to where nothing was measured is untestable. The offset is taken as it is
     stated. Nothing is learned here, so a candidate may hold where `learn_relations` does not yet
     claim it.
 
@@ -123,10 +125,18 @@ def judge_candidates(
     except Undetermined as lacking:
         open_question = Judgement.UNTESTABLE
         return tuple(JudgedCandidate(r, open_question, np.nan, str(lacking)) for r in claims)
-    return tuple(_judged(relation, examined) for relation in claims)
+    still = np.ptp(configurations, axis=0) <= NEVER_MOVED
+    return tuple(_judged(relation, examined, still) for relation in claims)
 
 
-def _judged(relation: SymmetryRelation, examined: ExaminedFit) -> JudgedCandidate:
+def _judged(
+    relation: SymmetryRelation, examined: ExaminedFit, still: NDArray[np.bool_]
+) -> JudgedCandidate:
+    carried = still & ((np.eye(relation.n) != relation.A).any(axis=1) | (relation.d != 0.0))
+    if carried.any():
+        joints = ", ".join(str(j + 1) for j in np.flatnonzero(carried))
+        reason = f"joint {joints} never moved, and the relation carries it elsewhere"
+        return JudgedCandidate(relation, Judgement.UNTESTABLE, np.nan, reason)
     fit, lack = examined.fit, examined.lack
     single = CandidateGroup(
         relation.basis, relation.A_sat[None], relation.d_sat[None], relation.Y[None]

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isotorque.learning.relations.testing.judge_candidates import Judgement, judge_candidates
@@ -66,3 +66,38 @@ def test_few_or_noisy_samples_leave_the_question_open():
 def test_another_number_of_joints_is_refused():
     with pytest.raises(InputError, match="number of joints"):
         judge_candidates(known_potential("2r")[1], np.zeros((3, 3)), np.zeros((3, 3)))
+
+
+@given(
+    st.sampled_from(["2r", "3r", "ur5"]),
+    st.integers(0, 5),
+    st.sampled_from([0.0, 1e-9, 1e-7]),
+    st.integers(0, 2**32 - 1),
+)
+@settings(max_examples=12)
+def test_a_joint_that_stood_still_makes_no_true_relation_contradicted(name, joint, sway, seed):
+    potential, group = known_potential(name)
+    rng = np.random.default_rng(seed)
+    joint %= potential.n
+    q = rng.uniform(-np.pi, np.pi, (120, potential.n))
+    q[:, joint] = rng.uniform(-3, 3) + sway * rng.uniform(size=120)
+    judged = {f.judgement for f in judge_candidates(group, q, potential.gradient(q))}
+    felt = potential.frequencies[:, joint].any()
+    assert judged == {Judgement.UNTESTABLE if felt else Judgement.CONSISTENT}
+
+
+def test_where_a_joint_that_stood_still_is_carried_nothing_was_measured():
+    potential, _ = known_potential("ur5")
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (120, 6))
+    q[:, 0] = 0.7
+    turned, mirrored = np.eye(6), np.eye(6)
+    mirrored[0, 0] = -1.0
+    claims = [
+        SymmetryRelation(turned, np.eye(6)[0], np.ones(6)),
+        SymmetryRelation(mirrored, np.zeros(6), np.ones(6)),
+        SymmetryRelation(turned, 0.3 * np.eye(6)[1], np.ones(6)),
+    ]
+    judged = judge_candidates(claims, q, potential.gradient(q))
+    untestable = Judgement.UNTESTABLE
+    assert [f.judgement for f in judged] == [untestable, untestable, Judgement.CONTRADICTED]
+    assert "joint 1 never moved" in judged[0].reason
