@@ -1,4 +1,4 @@
-"""Run the command line with ``python -m isotorque``."""
+"""Entry point of ``python -m isotorque``: the command line."""
 
 from isotorque.cli.main import run
 

@@ -1,4 +1,4 @@
-"""The same work on many processors: local processes, or a Dask cluster."""
+"""Parallel work on many processors: local processes, or a Dask cluster."""
 
 from __future__ import annotations
 

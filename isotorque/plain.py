@@ -1,4 +1,4 @@
-"""Values made of what JSON knows."""
+"""Conversion of values to those that JSON knows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a learner sees of an arm: apply a torque, go home, read the joint angles."""
+"""Protocol of an arm, as a learner sees it: apply a torque, go home, read the joint angles."""
 
 from __future__ import annotations
 

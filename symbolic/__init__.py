@@ -1,1 +1,1 @@
-"""What physics says, exactly: robots, gravity, relations, symmetries, BCTS, level sets."""
+"""Physics of an arm, exactly: robots, gravity, relations, symmetries, BCTS, level sets."""

@@ -1,4 +1,4 @@
-"""What a judge says: a claim, how it is known, and where it fails if it does."""
+"""Verdict of a judge: a claim, how it is known, and where it fails if it does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Help texts are shown as they are written."""
+"""Help texts of commands, shown as they are written."""
 
 from __future__ import annotations
 

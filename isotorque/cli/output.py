@@ -1,4 +1,4 @@
-"""How commands speak: JSON or text on standard output, everything else on standard error."""
+"""Output of commands: JSON or text on standard output, everything else on standard error."""
 
 from __future__ import annotations
 

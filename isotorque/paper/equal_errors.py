@@ -1,4 +1,4 @@
-"""How many samples an error takes, read off a curve of errors by samples."""
+"""Number of samples that an error takes, read off a curve of errors by samples."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long a constant torque that is a little wrong holds an arm where nothing is stable."""
+"""Time for which a slightly wrong constant torque holds an arm where nothing is stable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One piece of work: an experiment on a seed; any process on any machine can do it."""
+"""Piece of work: an experiment on a seed; any process on any machine can do it."""
 
 from __future__ import annotations
 

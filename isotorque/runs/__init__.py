@@ -1,1 +1,1 @@
-"""What one robot does from file to model: discover, learn, be judged; from recordings too."""
+"""Runs of one robot, from file to model: discovery, learning, judgement; from recordings too."""

@@ -1,4 +1,4 @@
-"""What ``isotorque verify`` judges: a relations file, a saved model, or both in a run."""
+"""Subjects of ``isotorque verify``: a relations file, a saved model, or both in a run."""
 
 from __future__ import annotations
 

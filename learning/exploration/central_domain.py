@@ -1,4 +1,4 @@
-"""Which of the equivalent fundamental domains an arm should explore, judged by what it has seen."""
+"""Choice among equivalent fundamental domains: the one an arm should explore."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much of a domain has been explored so far."""
+"""Share of a domain that has been explored so far."""
 
 from __future__ import annotations
 

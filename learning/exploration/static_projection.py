@@ -1,4 +1,4 @@
-"""Replace a torque that cannot be held by one that can (Algorithm 2, lines 17 and 18)."""
+"""Projection of a torque that cannot be held onto one that can (Algorithm 2, lines 17 and 18)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where exploration wants to go next: directions through a domain, or given goals."""
+"""Targets of exploration: directions through a domain, or given goals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run was made with: all that must be equal for it to be continued."""
+"""Description of a run: all that must be equal for it to be continued."""
 
 from __future__ import annotations
 

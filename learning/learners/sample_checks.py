@@ -1,4 +1,4 @@
-"""What every learner checks of the samples it is given."""
+"""Checks that every learner makes of its samples."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Using a symmetry group in a learner: copies of a sample, coordinates, the invariant distance."""
+"""Coordinates of a symmetry group for learners: copies of a sample, the invariant distance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One command of a recording: what was asked of the arm and what came of it."""
+"""Command of a recording: what was asked of the arm and what came of it."""
 
 from __future__ import annotations
 

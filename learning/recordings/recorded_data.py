@@ -1,4 +1,4 @@
-"""Puts samples that were measured elsewhere into a recording, beside an arm's own."""
+"""Samples that were measured elsewhere, put into a recording beside an arm's own."""
 
 from __future__ import annotations
 

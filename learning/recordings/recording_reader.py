@@ -1,4 +1,4 @@
-"""Reads a recording, finished or still being written."""
+"""Reader of a recording, finished or still being written."""
 
 from __future__ import annotations
 

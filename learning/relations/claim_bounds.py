@@ -1,4 +1,4 @@
-"""How wrong relations can be of the measured torque, gravity and what else the joints carry."""
+"""Bounds of relations of the measured torque: gravity and what else the joints carry."""
 
 from __future__ import annotations
 

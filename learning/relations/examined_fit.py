@@ -1,4 +1,4 @@
-"""One potential fitted to the poses of a recording, examined before anything is claimed from it."""
+"""Potential fitted to the poses of a recording, examined before anything is claimed from it."""
 
 from __future__ import annotations
 

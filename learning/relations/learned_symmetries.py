@@ -1,4 +1,4 @@
-"""What was learned about the symmetries of an arm, and how it is known."""
+"""Learned symmetries of an arm, and how they are known."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where to look next: the configuration whose torque says most about undecided symmetries."""
+"""Next sample: the configuration whose torque says most about undecided symmetries."""
 
 from __future__ import annotations
 

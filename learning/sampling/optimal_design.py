@@ -1,4 +1,4 @@
-"""Which configurations to measure next: those that leave least in doubt."""
+"""Optimal design: the configurations to measure next that leave least in doubt."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks what is given to a simulated arm."""
+"""Checks of what is given to a simulated arm."""
 
 from __future__ import annotations
 

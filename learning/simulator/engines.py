@@ -1,4 +1,4 @@
-"""Builds the engine, or the equations of motion, that a name asks for."""
+"""Engines and equations of motion by name."""
 
 from __future__ import annotations
 

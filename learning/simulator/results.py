@@ -1,4 +1,4 @@
-"""What a simulated arm hands out beside outcomes: its settings, its state, and tests on it."""
+"""Results of a simulated arm beside outcomes: its settings, its state, and tests on it."""
 
 from __future__ import annotations
 

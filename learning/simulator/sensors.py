@@ -1,4 +1,4 @@
-"""What the sensors of a simulated arm show."""
+"""Sensors of a simulated arm."""
 
 from __future__ import annotations
 

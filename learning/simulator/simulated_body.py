@@ -1,4 +1,4 @@
-"""What a simulated arm is made of, and tests that leave its state alone."""
+"""Body of a simulated arm, and tests that leave its state alone."""
 
 from __future__ import annotations
 

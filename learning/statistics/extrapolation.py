@@ -1,4 +1,4 @@
-"""Where a model has no data, and how large what it answers there is."""
+"""Extrapolation: where a model has no data, and how large what it answers there is."""
 
 from __future__ import annotations
 

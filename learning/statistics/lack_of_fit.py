@@ -1,4 +1,4 @@
-"""Whether the form that was fitted explains the samples, or they show what it has no term for.
+"""Lack of fit: whether the form that was fitted explains the samples.
 
 Whatever a model has no term for ends up in its residuals, is taken for noise there and averaged
 away as if it were noise; claims then come with bounds that shrink with the number of samples and

@@ -1,4 +1,4 @@
-"""What further samples will not mend, where rigid gravity explains those given badly."""
+"""Advice where rigid gravity explains samples badly and further ones will not mend it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether torques of single joints are given in another scale, or with another sign, than others.
+"""Scales and signs of single joints' torques that differ from those of the others.
 
 Torques of one potential belong together: the derivative of joint i's torque by angle j is that of
 joint j's by angle i. A sensor that shows 1.3 times the torque, or its opposite, breaks that, and no

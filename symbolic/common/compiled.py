@@ -1,4 +1,4 @@
-"""Functions compiled by numba, wherever their machine code may be kept."""
+"""Compilation of functions by numba, wherever their machine code may be kept."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which robot, and which part of it: a name or file with everything that changes it."""
+"""Options of a robot: a name or file with everything that changes it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Finding affine maps in a list of relations, offsets compared modulo full turns."""
+"""Index of affine maps: found in a list of relations, offsets compared modulo full turns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Splitting a group that acts on a torus into groups that act on separate coordinates."""
+"""Direct factors of a group that acts on a torus, each on coordinates of its own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One symmetry relation: q -> A q + d with torque signs Y."""
+"""Symmetry relation: q -> A q + d with torque signs Y."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers that no arm has: found before they do harm."""
+"""Checks of a body for numbers that no arm has, before they do harm."""
 
 from __future__ import annotations
 

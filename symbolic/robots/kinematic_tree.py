@@ -1,4 +1,4 @@
-"""What gravity needs to know of a robot: joints, axes, masses and centres of mass."""
+"""Kinematic tree: joints, axes, masses and centres of mass, all that gravity needs to know."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which joints of a robot stand still and where, and what is said of those that cannot move."""
+"""Locked joints of a robot and their angles, and what is said of joints that cannot move."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Masses that are missing or cannot be meant: named, and refused where nothing weighs anything."""
+"""Plausibility of masses: missing or impossible ones are named, or refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The part of a robot that options choose: joints locked, payload added, gravity turned."""
+"""Selection of what options choose of a robot: joints locked, payload added, gravity turned."""
 
 from __future__ import annotations
 

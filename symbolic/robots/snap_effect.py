@@ -1,4 +1,4 @@
-"""How much two arms' gravity torques differ at most: what snapping an angle does."""
+"""Effect of snapping an angle: the largest difference between two arms' gravity torques."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a learned model does under symmetries, under whole turns, and at joint limits."""
+"""Probes of a learned model: under symmetries, under whole turns, and at joint limits."""
 
 from __future__ import annotations
 

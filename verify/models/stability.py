@@ -1,4 +1,4 @@
-"""Which configurations an arm can hold by a constant torque alone."""
+"""Stability: the configurations that an arm can hold by a constant torque alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the report of a run shows."""
+"""Report of a run."""
 
 from __future__ import annotations
 

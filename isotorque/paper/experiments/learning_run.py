@@ -1,4 +1,4 @@
-"""One online learning run on a simulated arm, and its error as samples come in."""
+"""Online learning run on a simulated arm, and its error as samples come in."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an experiment of the paper is, and what it measures."""
+"""Experiment of the paper, and its measurements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small words that rows of the table are made of."""
+"""Wording of the rows of the table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which symmetry relations a recording supports, and which of its rows do not fit the others."""
+"""Symmetry relations that a recording supports, and its rows that do not fit the others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said in words about a recording: outliers, and how it disagrees with the robot file."""
+"""Remarks on a recording: outliers, and disagreement with the robot file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a torque form is evaluated: the few operations it is written in, and NumPy's."""
+"""Array operations that torque forms are written in, and NumPy's."""
 
 from __future__ import annotations
 

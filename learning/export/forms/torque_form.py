@@ -1,4 +1,4 @@
-"""What an exported model computes from a configuration: the interface of all kinds."""
+"""Torque form: the interface of all exported models, from a configuration to torques."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Enter points into a cell list and find those near a point, at a cost that stays the same."""
+"""Search in a cell list: points near a point, found at a cost that stays the same."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a network is shown of a configuration: its symmetric copies, as angles or on circles."""
+"""Inputs of a network: symmetric copies of a configuration, as angles or on circles."""
 
 from __future__ import annotations
 

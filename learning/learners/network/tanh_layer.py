@@ -1,4 +1,4 @@
-"""One hidden layer of tanh units, summed over symmetric copies: values and derivatives."""
+"""Hidden layer of tanh units, summed over symmetric copies: values and derivatives."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fitting a network: several starts tried for a while, the best one fitted to the end."""
+"""Training of a network: several starts tried for a while, the best one fitted to the end."""
 
 from __future__ import annotations
 

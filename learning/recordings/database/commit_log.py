@@ -1,4 +1,4 @@
-"""Commits to a recording, and when a commit waits for the disk."""
+"""Commit log of a recording, and its waits for the disk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Finds damage in a recording before anything is believed or written."""
+"""Damage check of a recording before anything is believed or written."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a recording's tables say, as the types of the toolkit; for readers and the writer alike."""
+"""Queries of a recording's tables, as the types of the toolkit; for readers and the writer."""
 
 from __future__ import annotations
 

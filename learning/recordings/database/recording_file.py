@@ -1,4 +1,4 @@
-"""Makes the file of a recording, and looks at an existing one before it is written to."""
+"""File of a recording: made anew, or looked at before it is written to."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One writer per recording: an advisory lock that dies with its process."""
+"""Lock of a recording for one writer: advisory, and dies with its process."""
 
 from __future__ import annotations
 

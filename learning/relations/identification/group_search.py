@@ -1,4 +1,4 @@
-"""Which symmetry groups a fitted potential may have, and the largest one the data agree with."""
+"""Symmetry groups that a fitted potential may have, and the largest one the data agree with."""
 
 from __future__ import annotations
 

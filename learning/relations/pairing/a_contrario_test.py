@@ -1,4 +1,4 @@
-"""Could chance have made a voted relation? An a-contrario test over distinct torques."""
+"""A-contrario test over distinct torques: whether chance could have made a voted relation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From single relations to their group: completion, orbits in the data, joint refinement."""
+"""Joint refinement of relations: completion to their group, orbits in the data, offsets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What recorded pairs say of every relation of a group, and which pairs no relation explains."""
+"""Evidence of recorded pairs for each relation of a group, and pairs that no relation explains."""
 
 from __future__ import annotations
 

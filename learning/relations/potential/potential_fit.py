@@ -1,4 +1,4 @@
-"""One gravity potential fitted to static samples, with the uncertainty of its coefficients."""
+"""Gravity potential fitted to static samples, with the uncertainty of its coefficients."""
 
 from __future__ import annotations
 

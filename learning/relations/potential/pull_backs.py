@@ -1,4 +1,4 @@
-"""What a relation does to the coefficients of a potential."""
+"""Pull-backs of a potential's coefficients by relations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How many more samples an undecided question takes, said in words."""
+"""Number of further samples that an undecided question takes, in words."""
 
 from __future__ import annotations
 

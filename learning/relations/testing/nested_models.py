@@ -1,4 +1,4 @@
-"""Do more functions explain samples better than chance would? F and chi-square tests."""
+"""F and chi-square tests of nested models: whether more functions explain more than chance."""
 
 from __future__ import annotations
 

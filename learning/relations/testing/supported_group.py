@@ -1,4 +1,4 @@
-"""Which relations of a group samples contradict, and the largest subgroup they support.
+"""Largest subgroup that samples support, and the relations that they contradict.
 
 Springs, cables and bent links break symmetries that rigid, straight arms have. A learner that ties
 its model to a group cannot see that; so ask before.

@@ -1,4 +1,4 @@
-"""Whether, where and when a step crosses a joint limit, compiled."""
+"""Joint limits that a step crosses: whether, where and when, compiled."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One adaptive step of the linearly implicit method, compiled."""
+"""Adaptive step of the linearly implicit method, compiled."""
 
 from __future__ import annotations
 

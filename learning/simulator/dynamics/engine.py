@@ -1,4 +1,4 @@
-"""What every engine does: move an arm under given torques until something happens."""
+"""Engine: moves an arm under given torques until something happens."""
 
 from __future__ import annotations
 

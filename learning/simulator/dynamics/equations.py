@@ -1,4 +1,4 @@
-"""What every set of equations of motion answers."""
+"""Equations of motion: the interface of all of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Refuses arms whose mass matrix is singular."""
+"""Mass matrix check: refusal of arms whose mass matrix is singular."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the compiled integrator is given: the arm it moves, the rules of rest, the workspace."""
+"""Plant of the compiled integrator: the arm it moves, the rules of rest, the workspace."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One adaptive step of the linearly implicit method, on Pinocchio's equations of motion."""
+"""Adaptive step of the linearly implicit method, on Pinocchio's equations of motion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the joints of a planar arm are, for stick figures."""
+"""Positions of the joints of a planar arm, for stick figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One search for a chain: from a start to a minimum, weights brought up to date, polished."""
+"""Search for a chain: from a start to a minimum, weights brought up to date, polished."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a fitted chain may be used, and why."""
+"""Status of a fitted chain: whether it may be used, and why."""
 
 from __future__ import annotations
 

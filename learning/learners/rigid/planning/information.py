@@ -1,4 +1,4 @@
-"""What samples tell about the parameters of a chain, and hence about its torque elsewhere."""
+"""Information of samples about the parameters of a chain, hence about its torque elsewhere."""
 
 from __future__ import annotations
 

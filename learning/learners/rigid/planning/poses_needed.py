@@ -1,4 +1,4 @@
-"""How many numbers a chain of a kind has, and how many poses it takes to find them."""
+"""Number of parameters of a chain of a kind, and of the poses that determine them."""
 
 from __future__ import annotations
 
