@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
+from isotorque.symbolic.symmetries import approximate_symmetries, primary_symmetries
 
 LINK = '<link name="{name}"><inertial><origin xyz="0 0 -{half}"/><mass value="{mass}"/>'
 LINK += '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
@@ -132,3 +133,23 @@ def test_tolerances_that_are_no_numbers_are_refused(call, tolerance):
     code, _, error = call("symmetries", "2r", "--tolerance", tolerance)
     assert code == 2
     assert "tolerance" in error
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1e-3, 0.1])
+def test_one_call_searches_once(call, monkeypatch, tolerance):
+    searches = []
+
+    def counted(module, name):
+        search = getattr(module, name)
+
+        def run(*arguments, **options):
+            searches.append(name)
+            return search(*arguments, **options)
+
+        monkeypatch.setattr(module, name, run)
+
+    counted(approximate_symmetries, "maximal_groups")
+    counted(primary_symmetries, "exact_symmetries")
+    code = call("symmetries", "2r", "--tolerance", str(tolerance))[0]
+    assert code == 0
+    assert searches == ["maximal_groups" if tolerance else "exact_symmetries"]
