@@ -19,6 +19,7 @@ TITLES = {
     "simulate": "Simulating",
     "learning_costs": "Learning: updates, predictions, fits",
     "growth": "How costs grow",
+    "start": "Starting",
 }
 PACKAGES = ("numpy", "numba", "pin", "sympy", "casadi", "adam-robotics", "mujoco", "scikit-learn")
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
