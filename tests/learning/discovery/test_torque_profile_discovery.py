@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from isotorque.learning.arm import OutcomeKind
+from isotorque.learning.arm import LimitHit, OutcomeKind, Playback, Settled, TimedOut
 from isotorque.learning.discovery.motor_babbling import FIRST_TORQUE, babble
 from isotorque.learning.discovery.torque_limits import TorqueLimitedArm
-from isotorque.learning.discovery.torque_profile_discovery import DiscoverySettings, lead
+from isotorque.learning.discovery.torque_profile_discovery import DiscoverySettings, discover, lead
 from isotorque.learning.exploration.guided_arm import LimitedGuidedArm
 from isotorque.learning.scheme import Scheme, SchemeSettings
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
@@ -94,3 +96,65 @@ def test_no_torque_beyond_the_largest_is_ever_commanded():
 def test_settings_that_make_no_sense_are_refused():
     with pytest.raises(ValueError, match="guided_places is 0"):
         DiscoverySettings(guided_places=0)
+
+
+class Scripted:
+    """An arm that ends each profile as it is told to, and remembers what was played."""
+
+    def __init__(self, ends):
+        self.ends, self.played = iter(ends), []
+
+    def play(self, torques, step_seconds):
+        self.played.append(torques)
+        kind, q = next(self.ends)
+        outcome = kind(np.asarray(q, dtype=float), torques[-1], 1.0)
+        return Playback(outcome, np.zeros(1), np.zeros((1, len(q))), torques[-1:])
+
+
+@given(st.integers(0, 2**32 - 1), st.lists(st.booleans(), min_size=2, max_size=16))
+@settings(max_examples=40)
+def test_each_profile_starts_where_the_last_one_ended(seed, holds):
+    """... and where the last one did not hold the arm, which went home, at tau* itself."""
+    rng = np.random.default_rng(seed)
+    tau = np.array([3.0, -1.0, 2.0])
+    ends = [(Settled if held else LimitHit, rng.uniform(-3, 3, 3)) for held in holds]
+    arm = Scripted(ends)
+    wanted = DiscoverySettings(profiles_per_torque=len(holds), patience=len(holds))
+    assert len(list(discover(arm, tau, np.ones(3), rng, wanted))) == len(holds)
+    np.testing.assert_array_equal(arm.played[0][0], tau)
+    for held, last, following in zip(holds, arm.played, arm.played[1:], strict=False):
+        np.testing.assert_array_equal(following[0], last[-1] if held else tau)
+    for profile in arm.played:
+        np.testing.assert_array_equal(np.abs(profile[[0, -1]]), np.abs([tau, tau]))
+
+
+@given(
+    st.lists(st.integers(0, 3), min_size=1, max_size=16),
+    st.integers(0, 2**32 - 1),
+    st.booleans(),
+)
+@settings(max_examples=40)
+def test_a_configuration_is_new_once_whatever_its_turns_and_its_last_digits(places, seed, before):
+    rng = np.random.default_rng(seed)
+    settings_ = DiscoverySettings(profiles_per_torque=16, patience=16)
+    away = np.array([[0.0, 0.0], [0.0, 3e-3], [1.0, -1.0], [np.pi, 0.0]])  # apart by more
+    ends = [
+        (Settled, away[i] + rng.uniform(-3e-4, 3e-4, 2) + 2 * np.pi * rng.integers(-1, 2, 2))
+        for i in places
+    ]
+    ends += [(TimedOut, np.zeros(2))] * (16 - len(ends))
+    known = (lambda: away[:1]) if before else None
+    found = discover(Scripted(ends), [1.0, 1.0], [1.0, 1.0], rng, settings_, known)
+    new = [played.new for played in found]
+    seen = {0} if before else set()
+    for place, is_new in zip(places, new, strict=False):
+        assert is_new == (place not in seen)
+        seen.add(place)
+    assert not any(new[len(places) :])
+
+
+def test_patience_ends_where_nothing_new_comes():
+    ends = [(Settled, [0.5, 0.5])] * 20
+    wanted = DiscoverySettings(profiles_per_torque=20, patience=4)
+    found = list(discover(Scripted(ends), [1.0, 1.0], [1.0, 1.0], np.random.default_rng(0), wanted))
+    assert [played.new for played in found] == [True, False, False, False, False]

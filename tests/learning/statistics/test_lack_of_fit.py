@@ -1,18 +1,20 @@
 """What a rigid arm has no term for is seen, told with its size, and never claimed over."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 
 from benchmarks.misfit import Cell, data_set, excess, holds, judged
 from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
 from isotorque.learning.relations.testing.judge_candidates import Judgement, judge_candidates
-from isotorque.learning.statistics.lack_of_fit import lack_of_fit
+from isotorque.learning.statistics.lack_of_fit import SIGNIFICANCE, Alternative, lack_of_fit
 from tests.learning.static_data import known_potential
 
 seeds = st.integers(0, 2**32 - 1)
@@ -147,3 +149,34 @@ def test_the_judge_sees_what_a_bound_hides():
     flipping = next(r for r in group if (r.Y < 0).all())
     assert excess(flipping, "2r", b, k, 0) > 1e6
     assert excess(flipping, "2r", 0.0 * b, k, 0) <= 1.0
+
+
+@given(st.floats(0.05, 0.95), st.integers(1, 3))
+@settings(max_examples=20)
+def test_alternatives_that_are_tried_together_share_the_chance_of_a_false_alarm(at, count):
+    q, tau = anywhere("2r", np.random.default_rng(7), 60)
+    fit = fit_potential(q, tau, all_frequencies(2))
+    likely = Alternative("likely", fit, np.zeros(2), 1.0, np.ones(2), "likely")
+    rare = replace(likely, name="rare", p_value=at * SIGNIFICANCE, said="rare")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(
+            f"{lack_of_fit.__module__}._alternatives", lambda *_: [rare] + [likely] * (count - 1)
+        )
+        found = lack_of_fit(fit, tau)
+    assert found.failed == (at * SIGNIFICANCE < SIGNIFICANCE / count)
+    assert (found.said == "rare") == found.failed
+
+
+@given(st.floats(0.05, 1.9), st.sampled_from(["2r", "3r"]), st.data())
+@settings(max_examples=20)
+def test_constants_of_several_joints_share_the_chance_of_a_false_alarm(at, name, data):
+    """A constant as rare as a share of the level, on one joint: seen below level / joints."""
+    q, tau = anywhere(name, np.random.default_rng(8), 60)
+    n = q.shape[1]
+    noise = MeasurementNoise(0.0, 0.05)
+    fit = fit_potential(q, tau, all_frequencies(n), noise)
+    joint = data.draw(st.integers(0, n - 1))
+    offsets = np.zeros(n)
+    offsets[joint] = stats.norm.isf(at * SIGNIFICANCE / n / 2) * fit.offset_errors[joint]
+    found = lack_of_fit(replace(fit, offsets=offsets), tau)
+    assert found.offset_joints.tolist() == ([joint] if at < 1 else [])

@@ -1,5 +1,5 @@
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -11,6 +11,8 @@ from isotorque.learning.relations.potential.potential_fit import (
 )
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import CandidateGroup, lifted_relations
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
+from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.verify.testing.strategies import known_arms
 from tests.learning.static_data import (
     known_potential,
@@ -104,3 +106,38 @@ def test_tail_probability_knows_its_limits():
     assert tail_probability(5.0, 0, np.inf) == 1.0
     assert np.isclose(tail_probability(3.84, 1, np.inf), 0.05, atol=1e-3)
     assert tail_probability(3.84, 1, 3.0) > 0.1  # three degrees of freedom know the noise badly
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 3))
+@settings(max_examples=30)
+def test_bounds_hold_for_maps_that_lead_out_of_the_frequencies(seed, n):
+    """A^T k may be a frequency that the fit does not know: both sides of the relation count."""
+    rng = np.random.default_rng(seed)
+    waves = all_frequencies(n)
+    truth = TrigonometricPolynomial(waves, *rng.normal(size=(2, len(waves))))
+    q = rng.uniform(-np.pi, np.pi, (60, n))
+    fit = fit_potential(q, truth.gradient(q), waves)
+    A = rng.integers(-2, 3, (n, n)).astype(float)
+    relation = SymmetryRelation(A, rng.uniform(-np.pi, np.pi, n), rng.choice([-1.0, 1.0], n))
+    group = CandidateGroup(relation.basis, A[None], relation.d[None], relation.Y[None])
+    bound, rms = torque_uncertainty(fit, group, 3.0)
+    error = worst_torque_error(relation, truth, rng, 2000)
+    assert (error <= bound[0] + 1e-9).all()
+    assert (rms <= bound + 1e-12).all()
+
+
+def test_the_bound_of_one_wave_and_its_double_is_twice_the_wave():
+    """cos 2q against cos q: they meet with opposite signs at q = pi."""
+    truth = TrigonometricPolynomial([[1]], [0.0], [2.0])
+    q = np.linspace(-3.0, 3.0, 20)[:, None]
+    fit = fit_potential(q, truth.gradient(q), all_frequencies(1))
+    double = CandidateGroup(
+        np.eye(1, dtype=np.int64), np.array([[[2.0]]]), np.zeros((1, 1)), np.ones((1, 1))
+    )
+    np.testing.assert_allclose(torque_uncertainty(fit, double, 3.0)[0], [[4.0]], rtol=1e-6)
+    assert (
+        worst_torque_error(
+            SymmetryRelation([[2]], [0.0], [1]), truth, np.random.default_rng(0), 5000
+        )[0]
+        > 3.9
+    )

@@ -4,10 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy import stats
 
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.learning.relations.testing.judge_candidates import Judgement
+from isotorque.learning.relations.testing.nested_models import Comparison
+from isotorque.learning.relations.testing.subgroup_test import over_joints
 from isotorque.learning.relations.testing.supported_group import supported_group
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.common.errors import InputError
@@ -214,3 +218,44 @@ def test_a_pose_that_was_recorded_often_is_one_sample():
     assert once.whole
     assert often.whole
     assert often.p_value == pytest.approx(once.p_value, rel=1e-2)
+
+
+@given(st.integers(1, 7), st.floats(0.01, 0.99), st.sampled_from([1e-3, 0.05]))
+@settings(max_examples=30)
+def test_each_of_many_relations_may_be_contradicted_at_its_share_of_the_level(number, at, level):
+    """Seven relations are tested at once: one is contradicted below a seventh of the level."""
+    arm = Arm("2r")
+    p_values = dict.fromkeys(range(1, 8), 1.0)
+    p_values[number] = at * level
+
+    class Trial:
+        def __init__(self, group, q, tau, noise):
+            self.table = group.multiplication_table
+
+        def free_directions(self):
+            return 1.0
+
+        def comparisons(self, members):
+            return [Comparison(min(p_values[i] for i in members if i), 0.0, 0.0)]
+
+        def p_value(self, members):
+            return 1.0
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(f"{supported_group.__module__}.GroupTrial", Trial)
+        found = supported_group(arm.group, *arm.recorded(20, 0), level=level)
+    for tested in found.tested:
+        contradicted = tested.p_value < level / 7
+        assert (tested.judgement is Judgement.CONTRADICTED) == contradicted
+    assert found.tested[number - 1].p_value == pytest.approx(at * level)
+
+
+@given(st.integers(1, 7), st.integers(0, 2**32 - 1))
+@settings(max_examples=10)
+def test_p_values_of_several_joints_together_are_small_no_more_often_than_they_say(joints, seed):
+    uniform = np.random.default_rng(seed).uniform(size=(2000, joints))
+    together = np.array([over_joints(row.tolist()) for row in uniform])
+    assert (together <= 1.0).all()
+    for level in (0.01, 0.1, 0.5):
+        assert np.sum(together < level) <= stats.binom.isf(1e-6, 2000, level)
+    assert np.isnan(over_joints([]))
