@@ -4,33 +4,47 @@ from __future__ import annotations
 
 from tests.mutations.mutation import Mutation
 
+IDENTIFY = "tests/learning/relations/identification/test_identify.py"
+
 RELATIONS = (
     Mutation(
         "learning/relations/testing/supported_group.py",
         "elif p_value < level / (group.order - 1):",
         "elif p_value < level:",
-        ("tests/learning/relations/testing/test_supported_group.py",),
+        (
+            "tests/learning/relations/testing/test_supported_group.py"
+            "::test_each_of_many_relations_may_be_contradicted_at_its_share_of_the_level",
+        ),
         "many relations are tested at once (Bonferroni)",
     ),
     Mutation(
         "learning/relations/testing/subgroup_test.py",
         "return min(1.0, min(p_values) * len(p_values)) if p_values else",
         "return min(p_values) if p_values else",
-        ("tests/learning/relations/testing/test_supported_group.py",),
+        (
+            "tests/learning/relations/testing/test_supported_group.py"
+            "::test_p_values_of_several_joints_together_are_small_no_more_often_than_they_say",
+        ),
         "joints are tested at once (Bonferroni)",
     ),
     Mutation(
         "learning/statistics/lack_of_fit.py",
         "if worst is not None and worst.p_value < SIGNIFICANCE / len(found):",
         "if worst is not None and worst.p_value < SIGNIFICANCE:",
-        ("tests/learning/statistics/test_lack_of_fit.py",),
+        (
+            "tests/learning/statistics/test_lack_of_fit.py"
+            "::test_alternatives_that_are_tried_together_share_the_chance_of_a_false_alarm",
+        ),
         "alternatives are tested at once (Bonferroni)",
     ),
     Mutation(
         "learning/statistics/lack_of_fit.py",
         "seen = (chance < SIGNIFICANCE / max(1, len(joints)))",
         "seen = (chance < SIGNIFICANCE)",
-        ("tests/learning/statistics/test_lack_of_fit.py",),
+        (
+            "tests/learning/statistics/test_lack_of_fit.py"
+            "::test_constants_of_several_joints_share_the_chance_of_a_false_alarm",
+        ),
         "constants of all joints are tested at once (Bonferroni)",
     ),
     Mutation(
@@ -51,22 +65,138 @@ RELATIONS = (
         "learning/relations/claim_bounds.py",
         "wider[i] += np.where(kept, 0.0, 2.0 * other.size)",
         "wider[i] += np.where(kept, 0.0, other.size)",
-        ("tests/learning/statistics/test_lack_of_fit.py",),
+        (
+            "tests/learning/relations/test_claim_bounds.py"
+            "::test_a_torque_that_may_be_there_is_allowed_for_on_both_sides",
+        ),
         "a torque that does not follow a relation counts on both of its sides",
     ),
     Mutation(
         "learning/relations/claim_bounds.py",
         "bound = np.maximum(bound, wider)",
         "bound = np.minimum(bound, wider)",
-        ("tests/learning/statistics/test_lack_of_fit.py",),
+        (
+            "tests/learning/relations/test_claim_bounds.py"
+            "::test_a_torque_that_may_be_there_is_allowed_for_on_both_sides",
+        ),
         "bounds allow for every alternative that samples do not exclude",
     ),
     Mutation(
         "learning/relations/claim_bounds.py",
         "return np.asarray((1.0 - group.Y) * limit)",
         "return np.asarray(0.5 * (1.0 - group.Y) * limit)",
-        ("tests/learning/statistics/test_lack_of_fit.py",),
+        (
+            "tests/learning/relations/test_claim_bounds.py"
+            "::test_a_constant_makes_relations_that_flip_it_wrong_by_twice_its_size",
+        ),
         "a constant b makes a flipped torque wrong by 2 b",
+    ),
+)
+
+STATISTICS = (
+    Mutation(
+        "learning/relations/identification/identify.py",
+        "    if lack.failed:\n        _, poses",
+        "    if False:\n        _, poses",
+        ("tests/learning/statistics/test_lack_of_fit.py::test_a_cable_over_a_pulley_is_told",),
+        "nothing is claimed where the samples show what the form has no term for",
+    ),
+    Mutation(
+        "learning/relations/identification/identify.py",
+        "    if excess > 1.0:\n",
+        "    if excess > 30.0:\n",
+        (IDENTIFY,),
+        "relations that could be wrong by much are not claimed",
+    ),
+    Mutation(
+        "learning/relations/identification/identify.py",
+        "SIGNIFICANCE = 1e-4",
+        "SIGNIFICANCE = 1e-40",
+        (IDENTIFY,),
+        "a group that the data contradict is not claimed",
+    ),
+    Mutation(
+        "learning/relations/identification/identify.py",
+        "kept = np.flatnonzero((whole.Y[:, lack.offset_joints] > 0.0).all(axis=1))",
+        "kept = np.arange(len(whole))",
+        (
+            "tests/learning/statistics/test_lack_of_fit.py"
+            "::test_a_constant_torque_leaves_the_relations_that_do_not_flip_it",
+        ),
+        "relations that flip a constant torque do not hold of the measured one",
+    ),
+    Mutation(
+        "learning/relations/identification/offset_snapping.py",
+        "AGREES = 3.5",
+        "AGREES = 3500.0",
+        ("tests/learning/relations/identification/test_offset_snapping.py",),
+        "offsets that disagree with right angles are left",
+    ),
+    Mutation(
+        "learning/relations/identification/offset_snapping.py",
+        "if (errors > SHARP).any() or",
+        "if",
+        ("tests/learning/relations/identification/test_offset_snapping.py",),
+        "blurred offsets agree with anything",
+    ),
+    Mutation(
+        "learning/relations/potential/potential_fit.py",
+        "return float(stats.t.isf(stats.norm.sf(deviations), freedom))",
+        "return deviations",
+        ("tests/learning/relations/potential/test_potential_fit.py",),
+        "few degrees of freedom know the noise badly (Student)",
+    ),
+    Mutation(
+        "learning/relations/potential/potential_fit.py",
+        "return float(stats.f.sf(statistic / degrees, degrees, freedom))",
+        "return float(stats.chi2.sf(statistic, degrees))",
+        (
+            "tests/learning/relations/identification/test_group_fit.py"
+            "::test_tail_probability_knows_its_limits",
+        ),
+        "few degrees of freedom know the noise badly (F)",
+    ),
+    Mutation(
+        "learning/relations/potential/potential_fit.py",
+        "    q, tau = _different(q, tau)\n",
+        "",
+        ("tests/learning/relations/potential/test_potential_fit.py", IDENTIFY),
+        "samples that repeat an earlier one check nothing",
+    ),
+    Mutation(
+        "learning/relations/testing/judge_candidates.py",
+        "    if excess > 1.0:\n",
+        "    if excess > 1e6:\n",
+        ("tests/learning/relations/testing/test_judge_candidates.py",),
+        "a relation that samples could not have contradicted is not called consistent",
+    ),
+    Mutation(
+        "learning/statistics/lack_of_fit.py",
+        "limit = np.linalg.norm(np.abs(per_unit) + deviations * doubt, axis=1)",
+        "limit = np.linalg.norm(np.abs(per_unit), axis=1)",
+        ("tests/learning/statistics/test_lack_of_fit.py",),
+        "an alternative may be larger than its estimate",
+    ),
+    Mutation(
+        "learning/statistics/poses.py",
+        "CHANCE = 1e-4",
+        "CHANCE = 1.0",
+        ("tests/learning/statistics/test_poses.py",),
+        "rows that nobody repeated are not taken for repeated ones",
+    ),
+    Mutation(
+        "learning/statistics/extrapolation.py",
+        "return not self.predicted <= WILD * self.seen",
+        "return not self.predicted <= 100 * WILD * self.seen",
+        ("tests/learning/statistics/test_extrapolation.py",),
+        "wild answers beyond the data are said",
+    ),
+    Mutation(
+        "learning/relations/pairing/a_contrario_test.py",
+        "MOST_ROW_ALARMS = -1.0",
+        "MOST_ROW_ALARMS = 100.0",
+        ("tests/learning/relations/pairing/test_pair_relations.py",),
+        "chance explains no row of a relation found by pairs",
     ),
 )
 
@@ -75,23 +205,29 @@ DISCOVERY = (
         "learning/discovery/torque_profiles.py",
         'bc_type="clamped"',
         'bc_type="not-a-knot"',
-        ("tests/learning/discovery/test_torque_profile_discovery.py",),
+        ("tests/learning/discovery/test_torque_profiles.py",),
         "profiles begin and end with zero derivatives",
     ),
     Mutation(
         "learning/discovery/torque_profile_discovery.py",
         "signs = ending if settled else np.ones_like(tau)",
         "signs = np.ones_like(tau)",
-        ("tests/learning/discovery/test_torque_profile_discovery.py",),
+        (
+            "tests/learning/discovery/test_torque_profile_discovery.py"
+            "::test_each_profile_starts_where_the_last_one_ended",
+        ),
         "a profile starts where the last one ended",
     ),
     Mutation(
         "learning/discovery/torque_profile_discovery.py",
         "np.all(np.abs(wrap(q - p)) < settings.same_angle) for p in found",
         "False for p in found",
-        ("tests/learning/discovery/test_torque_profile_discovery.py",),
+        (
+            "tests/learning/discovery/test_torque_profile_discovery.py"
+            "::test_a_configuration_is_new_once_whatever_its_turns_and_its_last_digits",
+        ),
         "configurations seen before are not new ones",
     ),
 )
 
-MUTATIONS = (*RELATIONS, *DISCOVERY)
+MUTATIONS = (*RELATIONS, *STATISTICS, *DISCOVERY)

@@ -1,15 +1,18 @@
 """Finding chains: exact from a handful of poses, or honestly not accepted."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 
-from isotorque.learning.learners.rigid.fitting.acceptance import fit_chain
+from isotorque.learning.learners.rigid.fitting.acceptance import _rival, fit_chain
 from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
 from isotorque.learning.learners.rigid.fitting.chain_parameters import serial
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
-from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
+from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel, SearchedChain
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
@@ -201,3 +204,85 @@ def test_one_seed_one_result():
     one, two = (fitted(q, torque, noise=0.05, seed=3) for _ in range(2))
     assert one.chain.rotations.tobytes() == two.chain.rotations.tobytes()
     assert one.starts == two.starts
+
+
+@pytest.mark.parametrize("seed", range(7))
+def test_accepted_chains_know_more_of_the_torque_elsewhere_than_its_size(seed):
+    """A joint that never moved: the errors say how open its torque is, and decide."""
+    gravity = GravityModel(load_robot("3r"))
+    rng = np.random.default_rng(seed)
+    q = random_poses(rng, 30, 3) * [1, 0, 1] + [0, 0.3, 0]
+    torque = gravity.torque(q) + 0.05 * rng.normal(size=q.shape)
+    fit = fitted(q, torque, noise=0.05, starts=30, seed=seed)
+    probes = random_poses(np.random.default_rng(99), 300, 3)
+    error = fit.standard_error(probes)
+    size = np.sqrt(np.mean(fit.chain.torque(probes) ** 2))
+    if fit.verdict.accepted:
+        assert np.sqrt(np.mean(error**2)) < 1.3 * size  # there and at the poses of the gate
+        assert largest_error(fit, gravity.torque, 3) < 5.0 * error.max()
+    elif seed in (1, 4, 6):  # errors of several times the torque
+        assert fit.verdict is FitStatus.TOO_FEW
+        assert np.sqrt(np.mean(error**2)) > size
+    assert not (fit.verdict.accepted and seed in (1, 4, 6))
+
+
+@given(st.floats(0.0, 60.0), st.floats(0.0, 0.2))
+@settings(max_examples=25)
+def test_chains_that_fit_as_well_and_differ_elsewhere_are_rivals(cost, change):
+    """... up to a likelihood ratio, and from a share of the torque on."""
+    chain = random_chain(np.random.default_rng(11), 3)
+    other = chain.with_levers(chain.levers * (1.0 + change))
+    whitening = np.tile(np.eye(3), (4, 1, 1))
+    best = SearchedChain(chain, 10.0, whitening)
+    model = ChainModel(serial(3), np.ones(3), np.zeros(3, bool), ())
+    found = _rival(
+        SimpleNamespace(model=model, found=[best, SearchedChain(other, 10.0 + cost, whitening)]),
+        best,
+    )
+    assert (found is not None) == (cost < 30.0 and change > 0.05)
+
+
+def test_errors_are_widened_where_the_noise_was_estimated():
+    """Three of them are exceeded as rarely as three of a normal variable (Student)."""
+    gravity = GravityModel(load_robot("2r"))
+    for poses in (12, 40):
+        rng = np.random.default_rng(poses)
+        q = random_poses(rng, poses, 2)
+        torque = gravity.torque(q) + 0.05 * rng.normal(size=q.shape)
+        fit = fitted(q, torque)
+        assert fit.verdict is FitStatus.HELD_OUT
+        chance = stats.t.sf(3.0 * fit.spread, fit.degrees / 2)
+        assert chance == pytest.approx(stats.norm.sf(3.0), rel=1e-6)
+        assert fit.spread > 1.0
+        assert fitted(q, torque, noise=0.05).spread == 1.0
+
+
+@pytest.mark.parametrize("rows", [1, 12])
+@pytest.mark.parametrize("name", ["2r", "3r", "ur5"])
+def test_with_noise_as_many_equations_are_to_spare_as_there_are_joints(name, rows):
+    """Rows of one pose do not count: they tell the noise, not the chain."""
+    gravity = GravityModel(load_robot(name))
+    n, rng = gravity.n, np.random.default_rng(8)
+    model = ChainModel(serial(n), np.ones(n), np.zeros(n, bool), ())
+    for poses in (poses_needed(model) - 1, poses_needed(model)):
+        q = np.repeat(random_poses(rng, poses, n), rows, axis=0)
+        torque = gravity.torque(q) + 0.05 * rng.normal(size=q.shape)
+        fit = fitted(q, torque, noise=0.05, starts=30)
+        assert fit.verdict is FitStatus.TOO_FEW
+        assert "more poses" in fit.remark
+        assert fit.starts <= 1
+
+
+@pytest.mark.parametrize("share", [0.12, 0.25])
+def test_a_chain_that_misses_a_tenth_of_the_torque_is_no_model(share):
+    """Noise not stated: a spring is not taken for noise where poses left out are missed."""
+    gravity = GravityModel(load_robot("2r"))
+    rng = np.random.default_rng(9)
+    q = random_poses(rng, 40, 2)
+    torque = gravity.torque(q)
+    size = np.sqrt(np.mean(torque**2))
+    bent = np.sin(3.0 * q) + np.cos(2.0 * q[:, ::-1])
+    torque = torque + share * size * bent / np.sqrt(np.mean(bent**2))
+    fit = fitted(q, torque, starts=30)
+    assert fit.verdict is FitStatus.MISFIT
+    assert 0.05 * size < fit.held_out < 0.5 * size

@@ -10,7 +10,7 @@ from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from isotorque.verify.testing.strategies import kinematic_trees
-from tests.learning.learners.rigid.random_chains import random_poses
+from tests.learning.learners.rigid.random_chains import chain_of_tree, random_poses
 
 
 def same_group(one, two):
@@ -86,3 +86,28 @@ def test_a_tolerance_adds_relations_that_nearly_hold():
         error = gravity.torque(relation.configuration(test)) - relation.Y * gravity.torque(test)
         assert np.all(np.abs(error).max(axis=0) <= relation.bound + 1e-9)
         assert relation.bound.max() < 0.1
+
+
+def test_bounds_hold_for_arms_that_are_not_as_special_as_they_look():
+    """A lever hidden in the noise is set to zero: relations are false of the arm by twice that."""
+    plain = chain_of_tree(load_robot("2r").tree)
+    small = int(np.argmin(np.abs(plain.levers[1])))
+    test = random_poses(np.random.default_rng(99), 300, 2)
+    claims, false, wrong = 0, 0, 0
+    for seed in range(14):
+        rng = np.random.default_rng(seed)
+        levers = plain.levers.copy()
+        levers[1, small] += 0.03 * rng.choice([-1, 1])  # two standard errors
+        arm = plain.with_levers(levers)
+        q = random_poses(rng, 25, 2)
+        torque = arm.torque(q) + 0.05 * rng.normal(size=q.shape)
+        found = RigidChain(torque_noise=0.05).fit(q, torque).symmetries()
+        here = arm.torque(test)
+        for relation in found.group:
+            error = np.abs(arm.torque(relation.configuration(test)) - relation.Y * here)
+            claims += 1
+            wrong += bool(error.max() > 0.05)
+            false += bool(np.any(error.max(axis=0) > relation.bound + 1e-12))
+    assert claims > 50
+    assert wrong > 10  # and these are claims that are off
+    assert false <= 0.01 * claims

@@ -5,6 +5,7 @@ import pytest
 
 from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.learning.learners.rigid.structure.snapping import LEVEL
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.learners.rigid.random_chains import chain_of_tree, random_chain, random_poses
@@ -75,3 +76,43 @@ def test_a_lever_too_small_to_be_seen_is_named_with_what_would_have_been():
     assert all(0.01 < h.visible < 0.3 for h in gone)
     assert found.smallest_visible_lever >= gone[0].visible
     assert "would have been seen" in str(gone[0])
+
+
+@pytest.mark.parametrize("deviation", [3.8, 4.2, 4.6])
+@pytest.mark.parametrize("what", ["twist", "lever"])
+def test_nothing_is_set_that_its_own_test_contradicts(what, deviation):
+    """About four standard errors off: the likelihood ratio forbids each, together they pass."""
+    plain = chain_of_tree(load_robot("3r").tree)
+
+    def bent(size):
+        rotations, levers = plain.rotations.copy(), plain.levers.copy()
+        if what == "twist":
+            c, s = np.cos(size), np.sin(size)
+            rotations[2] = rotations[2] @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+        else:
+            levers[2, np.argmin(np.abs(levers[2]))] += size
+        return ChainParameters.of(rotations, levers)
+
+    noise, size = 0.05, 1e-3
+    q = random_poses(np.random.default_rng(0), 40, 3)
+    seen = np.sqrt(np.sum((bent(size).torque(q) - plain.torque(q)) ** 2)) / noise / size
+    for seed in range(3):
+        found = fitted(bent(deviation / seen), 40, seed, noise).snapped()
+        assert found.hypotheses
+        assert all(hypothesis.p_value >= LEVEL for hypothesis in found.hypotheses)
+
+
+def test_what_would_have_been_seen_is_seen_as_often_as_stated():
+    """A lever of the size that is called visible is kept in about 95 % of recordings."""
+    chain = chain_of_tree(load_robot("2r").tree)
+    small = int(np.argmin(np.abs(chain.levers[1])))
+    learner = fitted(chain, 25, 0, 0.05)
+    kind = f"lever {'xy'[small]}"
+    (found,) = [h for h in learner.snapped().hypotheses if (h.joint, h.kind) == (1, kind)]
+    levers = chain.levers.copy()
+    levers[1, small] += found.visible
+    kept = 0
+    for seed in range(12):
+        again = fitted(chain.with_levers(levers), 25, seed, 0.05).snapped()
+        kept += not any((h.joint, h.kind) == (1, kind) for h in again.hypotheses)
+    assert kept >= 9

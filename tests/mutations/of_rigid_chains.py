@@ -1,0 +1,153 @@
+"""Mutations of what makes a rigid chain accepted, and of what is claimed of it."""
+
+from __future__ import annotations
+
+from tests.mutations.mutation import Mutation
+
+RIGID = "learning/learners/rigid"
+TESTS = "tests/learning/learners/rigid"
+ACCEPTANCE = f"{TESTS}/fitting/test_acceptance.py"
+SNAPPING = f"{TESTS}/structure/test_snapping.py"
+SYMMETRIES = f"{TESTS}/structure/test_chain_symmetries.py"
+
+MUTATIONS = (
+    Mutation(
+        f"{RIGID}/fitting/acceptance.py",
+        "LEAST_LIKELY = 1e-4",
+        "LEAST_LIKELY = 0.0",
+        (f"{ACCEPTANCE}::test_noise_is_accepted_as_large_as_it_was_stated",),
+        "a misfit larger than the stated noise is refused",
+    ),
+    Mutation(
+        f"{RIGID}/fitting/acceptance.py",
+        "    if not _known_elsewhere(result):\n",
+        "    if False:\n",
+        (f"{ACCEPTANCE}::test_accepted_chains_know_more_of_the_torque_elsewhere_than_its_size",),
+        "a chain whose torque elsewhere is open is not accepted, noise stated",
+    ),
+    Mutation(
+        f"{RIGID}/fitting/acceptance.py",
+        "                if _known_elsewhere(result):\n",
+        "                if True:\n",
+        (f"{ACCEPTANCE}::test_a_chain_whose_torque_elsewhere_is_open_is_not_accepted",),
+        "a chain whose torque elsewhere is open is not accepted, noise estimated",
+    ),
+    Mutation(
+        f"{RIGID}/fitting/acceptance.py",
+        "RIVAL_COST = 30.0",
+        "RIVAL_COST = -1.0",
+        (f"{ACCEPTANCE}::test_chains_that_fit_as_well_and_differ_elsewhere_are_rivals",),
+        "chains that explain the samples equally well and differ elsewhere are rivals",
+    ),
+    Mutation(
+        f"{RIGID}/fitting/acceptance.py",
+        "if result.degrees < 1 or not error < KNOWN_EVERYWHERE * fit.samples.largest_torque:",
+        "if result.degrees < 1:",
+        (
+            f"{ACCEPTANCE}::test_a_chain_whose_torque_elsewhere_is_open_is_not_accepted",
+            f"{ACCEPTANCE}::test_random_chains_are_reproduced_from_a_handful_of_poses",
+        ),
+        "exact samples determine a chain everywhere, or it is not accepted",
+    ),
+    Mutation(
+        f"{RIGID}/fitting/acceptance.py",
+        "if firm < model.n or samples.poses < poses_needed(model) + 1:",
+        "if False:",
+        (f"{ACCEPTANCE}::test_with_noise_as_many_equations_are_to_spare_as_there_are_joints",),
+        "with noise as many equations must be to spare as there are joints",
+    ),
+    Mutation(
+        f"{RIGID}/fitting/acceptance.py",
+        "HELD_OUT_SHARE = 0.05",
+        "HELD_OUT_SHARE = 0.5",
+        (f"{ACCEPTANCE}::test_a_chain_that_misses_a_tenth_of_the_torque_is_no_model",),
+        "a chain predicts poses that were left out, or is not accepted",
+    ),
+    Mutation(
+        f"{RIGID}/planning/poses_needed.py",
+        "return -(-(most_parameters(model) + 1) // model.n)",
+        "return -(-most_parameters(model) // model.n)",
+        (f"{TESTS}/planning/test_poses_needed.py",),
+        "one equation more than parameters checks a chain",
+    ),
+    Mutation(
+        f"{RIGID}/fitting/noise_estimate.py",
+        "kept = samples.part(~out)",
+        "kept = samples",
+        (f"{ACCEPTANCE}::test_a_chain_whose_torque_elsewhere_is_open_is_not_accepted",),
+        "what is left out is left out",
+    ),
+    Mutation(
+        f"{RIGID}/structure/snapping.py",
+        "if growth < self._threshold and self._tenable(found.cost):",
+        "if self._tenable(found.cost):",
+        (f"{SNAPPING}::test_nothing_is_set_that_its_own_test_contradicts",),
+        "a right angle is set if the likelihood ratio allows it (angles)",
+    ),
+    Mutation(
+        f"{RIGID}/structure/snapping.py",
+        "if growth >= self._threshold or not self._tenable(found.cost):",
+        "if not self._tenable(found.cost):",
+        (f"{SNAPPING}::test_nothing_is_set_that_its_own_test_contradicts",),
+        "a lever is dropped if the likelihood ratio allows it",
+    ),
+    Mutation(
+        f"{RIGID}/structure/snapping.py",
+        "stats.norm.ppf(POWER))",
+        "stats.norm.ppf(1.0 - POWER))",
+        (f"{SNAPPING}::test_what_would_have_been_seen_is_seen_as_often_as_stated",),
+        "what would have been seen is told, with the power of the test",
+    ),
+    Mutation(
+        f"{RIGID}/structure/chain_symmetries.py",
+        "DEVIATIONS = 3.0",
+        "DEVIATIONS = 0.3",
+        (f"{SYMMETRIES}::test_bounds_hold_for_arms_that_are_not_as_special_as_they_look",),
+        "bounds allow for three standard errors",
+    ),
+    Mutation(
+        f"{RIGID}/structure/chain_symmetries.py",
+        "yield np.maximum(np.abs(special.gains) * proved + measured, floor)",
+        "yield np.maximum(measured, floor)",
+        (f"{SYMMETRIES}::test_a_tolerance_adds_relations_that_nearly_hold",),
+        "what a relation of a tolerance errs by is part of its bound",
+    ),
+    Mutation(
+        f"{RIGID}/planning/standard_errors.py",
+        "return np.maximum(linear, fit.spread * np.sqrt(square / len(replicas)))",
+        "return 0.5 * linear",
+        (f"{TESTS}/test_rigid_chain.py::test_standard_errors_are_calibrated",),
+        "standard errors are as large as errors",
+    ),
+    Mutation(
+        f"{RIGID}/fitting/chain_fit.py",
+        "return float(stats.t.isf(stats.norm.sf(3.0), freedom)) / 3.0",
+        "return 1.0",
+        (f"{ACCEPTANCE}::test_errors_are_widened_where_the_noise_was_estimated",),
+        "errors are larger where the noise was estimated (Student)",
+    ),
+    Mutation(
+        f"{RIGID}/planning/information.py",
+        "np.inf, error)",
+        "error, error)",
+        (f"{TESTS}/planning/test_information.py",),
+        "torques that samples leave open have infinite errors",
+    ),
+    Mutation(
+        "learning/relations/chain_identification.py",
+        "if worst > LARGEST_ERROR * float(np.abs(torques).max()):",
+        "if False:",
+        (
+            "tests/learning/relations/test_chain_identification.py"
+            "::test_no_relation_is_claimed_that_could_be_wrong_by_a_twentieth",
+        ),
+        "relations that could be wrong by much are not claimed",
+    ),
+    Mutation(
+        "learning/relations/chain_identification.py",
+        "or _shows_constants(learner, configurations, torques):",
+        "or False:",
+        ("tests/learning/relations/test_chain_identification.py",),
+        "a constant that passes for noise makes relations false",
+    ),
+)
