@@ -105,14 +105,14 @@ STATISTICS = (
         "learning/relations/identification/identify.py",
         "    if excess > 1.0:\n",
         "    if excess > 30.0:\n",
-        (IDENTIFY,),
+        (f"{IDENTIFY}::test_what_could_be_wrong_by_a_tenth_of_the_torque_is_not_claimed",),
         "relations that could be wrong by much are not claimed",
     ),
     Mutation(
         "learning/relations/identification/identify.py",
         "SIGNIFICANCE = 1e-4",
         "SIGNIFICANCE = 1e-40",
-        (IDENTIFY,),
+        (f"{IDENTIFY}::test_few_stable_samples_give_the_whole_group",),
         "a group that the data contradict is not claimed",
     ),
     Mutation(
@@ -143,7 +143,10 @@ STATISTICS = (
         "learning/relations/potential/potential_fit.py",
         "return float(stats.t.isf(stats.norm.sf(deviations), freedom))",
         "return deviations",
-        ("tests/learning/relations/potential/test_potential_fit.py",),
+        (
+            "tests/learning/relations/potential/test_potential_fit.py"
+            "::test_quantiles_are_exceeded_as_rarely_as_those_of_a_normal_variable",
+        ),
         "few degrees of freedom know the noise badly (Student)",
     ),
     Mutation(
@@ -160,21 +163,27 @@ STATISTICS = (
         "learning/relations/potential/potential_fit.py",
         "    q, tau = _different(q, tau)\n",
         "",
-        ("tests/learning/relations/potential/test_potential_fit.py", IDENTIFY),
+        ("tests/learning/relations/potential/test_potential_fit.py",),
         "samples that repeat an earlier one check nothing",
     ),
     Mutation(
         "learning/relations/testing/judge_candidates.py",
         "    if excess > 1.0:\n",
         "    if excess > 1e6:\n",
-        ("tests/learning/relations/testing/test_judge_candidates.py",),
+        (
+            "tests/learning/relations/testing/test_judge_candidates.py"
+            "::test_few_or_noisy_samples_leave_the_question_open",
+        ),
         "a relation that samples could not have contradicted is not called consistent",
     ),
     Mutation(
         "learning/statistics/lack_of_fit.py",
         "limit = np.linalg.norm(np.abs(per_unit) + deviations * doubt, axis=1)",
         "limit = np.linalg.norm(np.abs(per_unit), axis=1)",
-        ("tests/learning/statistics/test_lack_of_fit.py",),
+        (
+            "tests/learning/statistics/test_lack_of_fit.py"
+            "::test_an_alternative_may_be_as_large_as_the_samples_leave_room_for",
+        ),
         "an alternative may be larger than its estimate",
     ),
     Mutation(
@@ -188,14 +197,17 @@ STATISTICS = (
         "learning/statistics/extrapolation.py",
         "return not self.predicted <= WILD * self.seen",
         "return not self.predicted <= 100 * WILD * self.seen",
-        ("tests/learning/statistics/test_extrapolation.py",),
+        (
+            "tests/learning/statistics/test_extrapolation.py"
+            "::test_answers_beyond_twice_the_largest_torque_are_wild_and_said",
+        ),
         "wild answers beyond the data are said",
     ),
     Mutation(
         "learning/relations/pairing/a_contrario_test.py",
         "MOST_ROW_ALARMS = -1.0",
         "MOST_ROW_ALARMS = 100.0",
-        ("tests/learning/relations/pairing/test_pair_relations.py",),
+        ("tests/learning/relations/pairing/test_a_contrario_test.py",),
         "chance explains no row of a relation found by pairs",
     ),
 )

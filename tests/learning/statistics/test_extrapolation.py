@@ -11,7 +11,7 @@ from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process imp
 from isotorque.learning.learners.registry import BATCH_LEARNERS, LearningTask, learner_by_name
 from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
-from isotorque.learning.statistics.extrapolation import WILD, extrapolation
+from isotorque.learning.statistics.extrapolation import WILD, Extrapolation, extrapolation
 from isotorque.learning.statistics.shrinkage import shrunk_least_squares
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
@@ -126,3 +126,12 @@ def test_data_that_cover_the_joints_need_no_remark():
     assert found.remark is None
     assert not found.wild
     assert found.document()["trusted"]
+
+
+@given(st.floats(0.1, 50.0), st.floats(0.1, 5000.0) | st.just(np.inf) | st.just(np.nan))
+def test_answers_beyond_twice_the_largest_torque_are_wild_and_said(seen, predicted):
+    low, high, where = np.array([-3.0]), np.array([3.0]), np.zeros(1)
+    found = Extrapolation(low, high, 0.0, seen, predicted, where, np.nan)
+    assert found.wild == (not predicted <= 2.0 * seen)
+    assert found.document()["trusted"] != found.wild
+    assert ("not to be trusted" in (found.remark or "")) == found.wild

@@ -180,3 +180,17 @@ def test_constants_of_several_joints_share_the_chance_of_a_false_alarm(at, name,
     offsets[joint] = stats.norm.isf(at * SIGNIFICANCE / n / 2) * fit.offset_errors[joint]
     found = lack_of_fit(replace(fit, offsets=offsets), tau)
     assert found.offset_joints.tolist() == ([joint] if at < 1 else [])
+
+
+def test_an_alternative_may_be_as_large_as_the_samples_leave_room_for():
+    """A spring hidden in the noise: what is allowed for covers it, not only its estimate."""
+    covered = []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        q, tau = anywhere("2r", rng, 30)
+        rate = 0.01
+        noisy = tau + rate * q + 0.05 * rng.normal(size=q.shape)
+        fit = fit_potential(q, noisy, all_frequencies(2))
+        spring = next(a for a in lack_of_fit(fit, noisy).alternatives if a.name == "spring")
+        covered += (spring.size >= rate * np.pi).tolist()
+    assert np.mean(covered) > 0.95
