@@ -128,8 +128,8 @@ MUTATIONS = (
     ),
     Mutation(
         f"{RIGID}/planning/information.py",
-        "np.inf, error)",
-        "error, error)",
+        "np.where(open_part > least, np.inf, known)",
+        "known",
         (f"{TESTS}/planning/test_information.py",),
         "torques that samples leave open have infinite errors",
     ),
