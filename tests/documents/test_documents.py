@@ -181,7 +181,7 @@ def test_figures_of_longer_commands(command, place, capsys):
     check_figures(command, SLOW_FIGURES[command], capsys)
 
 
-@pytest.mark.parametrize(("robot", "observed", "order"), [("2r", 2, 8), ("3r", 0, 16)])
+@pytest.mark.parametrize(("robot", "observed", "order"), [("2r", 0, 8), ("3r", 0, 16)])
 def test_pairs_show_as_many_relations_as_the_pages_say(robot, observed, order, place, capsys):
     for page in ("README.md", "differences.md", "limits.md"):
         said = re.findall(r"(\d+|none) of (\d+) on\s+the\s+3?2?R", PAGES[page])

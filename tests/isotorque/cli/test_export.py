@@ -17,6 +17,7 @@ from isotorque.learning.learners.local_linear.recursive_least_squares import Rec
 from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
 from isotorque.learning.learners.registry import SAVED_LEARNERS
 from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
+from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 from isotorque.symbolic.gravity.gravity_model import GravityModel
@@ -32,6 +33,7 @@ LEARNERS = [
     (EquivariantTrigonometric(), "waves"),
     (StaticRegressor("2r"), "waves"),
     (RigidChain(), "rigid chain"),
+    (RigidChainProcess(), "rigid chain and kernels"),
     (SymmetricGaussianProcess(0.1, length_scale=1.5), "kernels"),
 ]
 
