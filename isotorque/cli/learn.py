@@ -221,10 +221,11 @@ def _chain(document: dict[str, Any]) -> str:
 
 def _given(context: typer.Context) -> dict[str, Any]:
     """Options that stand on the command line, with their values."""
+    sources = {name: context.get_parameter_source(name) for name in context.params}
     return {
-        name: value
-        for name, value in context.params.items()
-        if "DEFAULT" not in str(context.get_parameter_source(name))
+        name: context.params[name]
+        for name, source in sources.items()
+        if source is not None and "DEFAULT" not in source.name
     }
 
 
