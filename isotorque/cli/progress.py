@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 
 @contextmanager
@@ -36,7 +36,9 @@ def progress_bars(quiet: bool) -> Iterator[Callable[[str, int, int, str], None]]
     tasks: dict[str, TaskID] = {}
     notes: dict[str, str] = {}
     counts: dict[str, int] = {}
-    with Progress(*columns, console=console, disable=not console.is_terminal) as bars:
+    bars = Progress(*columns, console=console, disable=not console.is_terminal)
+    # rich before 14.3 ends bars with an empty line even where none are shown
+    with bars if console.is_terminal else nullcontext():
 
         def update(stage: str, done: int, total: int, note: str) -> None:
             if stage not in tasks:
