@@ -42,7 +42,7 @@ def imported(action):
         (["--help"], set()),
         (["robots"], set()),
         (["symmetries", "2r"], {"pinocchio"}),
-        (["symmetries", "panda", "--tolerance", "0.1"], {"pinocchio"}),
+        (["symmetries", "panda", "--tolerance", "0.1"], {"pinocchio", "scipy"}),
         (["derive", "2r", "--latex"], {"pinocchio"}),
         (["derive", "2r"], {"pinocchio", "numba", "scipy"}),
         (["domain", "2r"], {"pinocchio", "scipy"}),
