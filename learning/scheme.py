@@ -27,6 +27,9 @@ from isotorque.learning.exploration.registry import (
     exploration_by_name,
 )
 from isotorque.learning.exploration.settings import ExplorationSettings
+from isotorque.learning.learners.rigid.chain_watch import ChainWatch
+from isotorque.learning.relations.chain_identification import FEW_JOINTS, relations_of_chain
+from isotorque.learning.relations.chain_identification import METHOD as BY_CHAIN
 from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
 from isotorque.learning.relations.next_sample import next_torque
@@ -37,6 +40,7 @@ from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 
 Array = NDArray[np.float64]
+DEFAULT_N_MIN = 2
 SHARE_POINTS = 1000
 """Points of the BCTS that tell how much of it has been explored."""
 
@@ -56,7 +60,8 @@ class SchemeSettings:
     strategy : str
         Which exploration it is, see `exploration_by_name`.
     n_min : int
-        Relations needed before learning begins (n_min of section 5.4).
+        Relations needed before learning begins (n_min of section 5.4). With the default, an arm
+        that is shown by a rigid chain to have none but the identity is not waited for.
     confirmations : int
         Target torques in a row that must leave the learned group as it is.
     max_targets : int
@@ -70,6 +75,9 @@ class SchemeSettings:
         Whether the arm can be placed and held from outside: its home torque is then measured, and
         an arm that would not stay there by itself is guided through its whole range, with
         ``arm.reach`` the limits (n, 2) [rad] it is guided within.
+    parents : tuple of int or None
+        Joint that carries each joint, -1 for the base; None: joints in series. Nothing else of
+        the arm is told.
     from_trajectories : bool
         Whether the static torques of configurations passed by are admitted too, once the
         relations are known (`visited_torques`).
@@ -77,13 +85,14 @@ class SchemeSettings:
 
     discovery: DiscoverySettings = field(default_factory=DiscoverySettings)
     exploration: ExplorationSettings = field(default_factory=ExplorationSettings)
-    n_min: int = 2
+    n_min: int = DEFAULT_N_MIN
     confirmations: int = 2
     max_targets: int = 12
     samples: int = 2000
     strategy: str = DIRECTIONS
     confirm: int = 0
     guided: bool = False
+    parents: tuple[int, ...] | None = None
     from_trajectories: bool = False
 
     def __post_init__(self) -> None:
@@ -156,6 +165,8 @@ class Scheme:
         The estimate of the BCTS, where the arm has settled and away from its limits.
     learner : Learner or None
         The inverse statics model.
+    chain : ChainWatch
+        The rigid chain behind everything that has settled, if there is one.
     home_torque : (n,) array or None
         Torque about which the first ones are commanded [N m]; None where the arm was found not to
         hold itself.
@@ -175,6 +186,7 @@ class Scheme:
         self.settings = settings if settings is not None else SchemeSettings()
         self.home = np.array(arm.q, dtype=float)
         self.static_torques = StaticTorqueSet(len(self.home))
+        self.chain = ChainWatch(len(self.home), self.settings.parents)
         self.learned: LearnedSymmetries | None = None
         self.domain: FundamentalDomain | None = None
         self.learner: Learner | None = None
@@ -182,7 +194,8 @@ class Scheme:
         self.gates: list[GateDecision] = []
         self.targets: list[Array] = []
         self.exploration: Exploration | None = None
-        self._make_learner, self._given, self._use = make_learner, group, use_symmetries
+        self.make_learner = make_learner
+        self._given, self._use = group, use_symmetries
         self._seen: list[Array] = []
         self._trajectories: list[Array] = []
         self._settled_q: list[Array] = []
@@ -234,6 +247,7 @@ class Scheme:
             self.static_torques.add(outcome.torque)
             self._settled_q.append(np.array(outcome.q))
             self._settled_torque.append(np.array(outcome.torque))
+            self.chain.add(outcome.q, outcome.torque)
         else:
             self.static_torques.mark_inadmissible(outcome.torque)
 
@@ -250,7 +264,9 @@ class Scheme:
         """
         settings = self.settings.discovery
         self.arm.go_home()
-        babbling = babble(self.arm, self.rng, settings.babbling, self._search())
+        babbling = babble(
+            self.arm, self.rng, settings.babbling, self._search(), self._wants_more_poses
+        )
         self.home_torque = yield from self._taken(babbling)
         self.arm.go_home()
         if self.home_torque is None:
@@ -288,6 +304,11 @@ class Scheme:
             self._take(outcome)
             yield Discovery(None, outcome, None, outcome.kind is OutcomeKind.SETTLED)
 
+    def _wants_more_poses(self, scale: Array) -> bool:
+        """Whether a chain lacks poses, once the torque scale of every joint is known."""
+        self.chain.unloaded = scale == 0.0
+        return self._many_joints and self.chain.learner is None
+
     def _lead(self) -> Iterator[Discovery]:
         """Lead the arm about until its samples show the relations."""
         arm: Any = self.arm
@@ -320,28 +341,57 @@ class Scheme:
             outcome = self.arm.apply(wanted.torque)
             self._take(outcome)
             yield Discovery(None, outcome, None, outcome.kind is OutcomeKind.SETTLED)
-            self.learned = learn_relations(*self.samples)
+            self.learned = self.relations(*self.samples)
             orders.append(self.learned.order)
         if self.learned is not None and orders:  # they may confirm, or contradict
             order, decided = self.learned.order, self.learned.decided
             unchanged = len(orders) >= self.settings.confirmations and set(orders) == {order}
             confirmed = unchanged or bool(self.gates and self.gates[-1].passed)
-            passed = decided and order >= self.settings.n_min and confirmed
+            passed = decided and self._enough(order) and confirmed
             missing = self.learned.missing
             self.gates.append(GateDecision(len(self.targets), order, passed, missing))
 
     def _gate(self) -> bool:
         """Learn the relations from all settled samples; say whether they suffice."""
-        self.learned = learn_relations(*self.samples)
+        self.learned = self.relations(*self.samples)
         order, decided = self.learned.order, self.learned.decided
         recent = [g.order for g in self.gates[-self.settings.confirmations :]]
         confirmed = len(recent) >= self.settings.confirmations and all(o == order for o in recent)
-        passed = decided and order >= self.settings.n_min and confirmed
-        if self.settings.confirmations == 0:
-            passed = decided and order >= self.settings.n_min
+        passed = decided and self._enough(order) and confirmed
+        sure = self.learned.method == BY_CHAIN and self._many_joints
+        if self.settings.confirmations == 0 or sure:
+            passed = decided and self._enough(order)
         asked = len(self.targets) or len(self.gates) + 1
         self.gates.append(GateDecision(asked, order, passed, self.learned.missing))
         return passed
+
+    def _enough(self, order: int) -> bool:
+        """Whether relations suffice to begin; fewer do if a chain shows that there are no more.
+
+        Asked for more than the default, an arm is waited for in vain, as it was asked for.
+        """
+        if order >= self.settings.n_min:
+            return True
+        return self.settings.n_min <= DEFAULT_N_MIN and self.chain.confirmed is not None
+
+    def relations(self, q: Array, torque: Array) -> LearnedSymmetries:
+        """Learn the relations from static samples (m, n) [rad], (m, n) [N m].
+
+        A chain that later samples have confirmed tells them where joints are many: waves are then
+        too many to be fitted. With few joints it does so where the samples themselves show less.
+        """
+        known = self.chain.knowledge().learner if self.chain.confirmed is not None else None
+        by_chain = None if known is None else relations_of_chain(known, *self.chain.samples)
+        if by_chain is not None and self._many_joints:
+            return by_chain
+        learned = learn_relations(q, torque)
+        if by_chain is None or (learned.lack is not None and learned.lack.failed):
+            return learned
+        return learned if learned.decided and learned.order >= by_chain.order else by_chain
+
+    @property
+    def _many_joints(self) -> bool:
+        return len(self.home) > FEW_JOINTS
 
     def learn(self) -> Iterator[ExplorationStep]:
         """Explore within the BCTS and learn online.
@@ -358,7 +408,7 @@ class Scheme:
             self.domain = central_domain(group, q, np.array(self._seen or [self.home]))
             points = self.domain.sample(np.random.default_rng(0), SHARE_POINTS)
             explored = ExploredShare(points, self.settings.exploration.step_width, group)
-        self.learner = self._make_learner(group, self.torque_range)
+        self.learner = self.make_learner(group, self.torque_range)
         about = {} if self.home_torque is None else {"home_torque": self.home_torque}
         self.exploration = exploration_by_name(
             self.settings.strategy,
@@ -373,4 +423,7 @@ class Scheme:
             explored=explored,
             **about,
         )
-        yield from self.exploration.steps(self.settings.samples)
+        for step in self.exploration.steps(self.settings.samples):
+            if step.outcome.kind is OutcomeKind.SETTLED:
+                self.chain.add(step.outcome.q, step.outcome.torque)
+            yield step

@@ -104,8 +104,9 @@ LearnerName = Annotated[
         "--learner",
         metavar="NAME",
         help="Online: local-linear-map, local-linear-map-it, recursive-least-squares; batch:"
-        " network, gaussian-process, trigonometric, parametric; by default local-linear-map-it,"
-        " for a lattice network, for data and for more than 3 joints gaussian-process.",
+        " network, gaussian-process, trigonometric, parametric, rigid-chain; by default"
+        " local-linear-map-it, for a lattice network, for data and for more than 3 joints"
+        " gaussian-process. run, without it, ends with a rigid-chain where one is accepted.",
         show_default=False,
     ),
 ]

@@ -54,7 +54,9 @@ def run(
     Passed is a run whose relations are none of them false, whose gate before learning is passed,
     and whose model is right within --tolerance on the whole space; where orbits without a stable
     member exist, those with one are judged too, on their own. An arm that cannot hold itself is
-    guided. The same command resumes a run that was stopped.
+    guided. Without --learner the model is a rigid chain, if one is found that all later samples
+    agree with; up to three joints the paper's learner explores beside it. The same command resumes
+    a run that was stopped.
     """
     from isotorque.cli.progress import progress_bars
     from isotorque.runs.experiment import save_run_model
@@ -90,7 +92,7 @@ def run(
         progress("judging", 0, 1, "")
         report = judge_run(outcome)
         progress("judging", 1, 1, "")
-    if outcome.scheme.learner is not None:
+    if outcome.model is not None:
         save_run_model(outcome, out)
     save_relations(outcome, out, plain)
     page, document = write_report(report, out)

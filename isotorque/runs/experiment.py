@@ -5,16 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.arm import OutcomeKind
 from isotorque.learning.discovery.torque_limits import TorqueLimitedArm
-from isotorque.learning.exploration.exploration import ExplorationStep
 from isotorque.learning.exploration.guided_arm import LimitedGuidedArm
 from isotorque.learning.exploration.registry import DIRECTIONS, GUIDED_DIRECTIONS
 from isotorque.learning.files.saved_models import SavedModel, save_model
@@ -22,12 +19,19 @@ from isotorque.learning.learners.memory.collected_samples import CollectedSample
 from isotorque.learning.learners.registry import BATCH_LEARNERS, learner_by_name, online_learner
 from isotorque.learning.recordings.recorded_simulation import RecordedSimulation
 from isotorque.learning.recordings.recording import Recording
-from isotorque.learning.scheme import Discovery, LearnerFactory, Scheme, SchemeSettings
+from isotorque.learning.scheme import LearnerFactory, Scheme, SchemeSettings
 from isotorque.learning.simulator.settings import PhysicsMode
-from isotorque.learning.simulator.simulated_arm import SimulatedArm
-from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
+from isotorque.runs.chain_model import (
+    chain_curve,
+    choose_model,
+    is_usable,
+    let_chain_lead,
+    told_parents,
+)
+from isotorque.runs.learning_curve import DenseTest, curve_counts
 from isotorque.runs.options.recorded_robot import keep_robot_file
-from isotorque.runs.options.run_options import LATTICE, RunOptions
+from isotorque.runs.options.run_options import CHAIN, LATTICE, RunOptions
+from isotorque.runs.run_outcome import RunOutcome
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.single_thread import single_thread
@@ -40,68 +44,6 @@ Array = NDArray[np.float64]
 Progress = Callable[[str, int, int, str], None]
 
 DISCOVERING, LEARNING = "discovering symmetries", "learning the inverse statics"
-
-
-@dataclass(eq=False)
-class RunOutcome:
-    """Everything a run produced, for the judges.
-
-    Attributes
-    ----------
-    options : RunOptions
-    robot : Robot
-    gravity : GravityModel
-        The truth.
-    group : SymmetryGroup
-        The true group.
-    arm : SimulatedArm
-        The simulated arm (to test on what was learned).
-    scheme : Scheme
-        The learner's side: relations, SST, BCTS, model.
-    motions : list of Discovery
-        The discovery phase.
-    steps : list of ExplorationStep
-        The learning phase.
-    curve : list of CurvePoint
-        RMSE on the dense set while learning.
-    seconds : dict of str to float
-        Wall-clock time of the stages [s].
-    remarks : tuple of str
-        What else the user should know.
-    details : dict
-        More for the JSON document of the model, plain data.
-    lattice_suffices : bool
-        Whether a lattice showed the relations that are needed.
-    """
-
-    options: RunOptions
-    robot: Robot
-    gravity: GravityModel
-    group: SymmetryGroup
-    arm: SimulatedArm
-    scheme: Scheme
-    motions: list[Discovery] = field(default_factory=list)
-    steps: list[ExplorationStep] = field(default_factory=list)
-    curve: list[CurvePoint] = field(default_factory=list)
-    seconds: dict[str, float] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
-    details: dict[str, Any] = field(default_factory=dict)
-    lattice_suffices: bool = False
-
-    @property
-    def gate_passed(self) -> bool:
-        """Whether discovery or lattice told enough to begin learning (n_sym >= n_min)."""
-        return self.scheme.gate_passed or self.lattice_suffices
-
-    @property
-    def stops_before_learning(self) -> bool:
-        """Whether nothing is learned, because too little is known of the symmetries."""
-        return not (self.gate_passed or self.options.learn_anyway)
-
-    def ends(self) -> dict[OutcomeKind, int]:
-        """How the motions of the discovery ended."""
-        kinds = [motion.outcome.kind for motion in self.motions]
-        return {kind: kinds.count(kind) for kind in OutcomeKind}
 
 
 def prepare_run(options: RunOptions) -> RunOutcome:
@@ -124,7 +66,7 @@ def prepare_run(options: RunOptions) -> RunOutcome:
         arm,
         random_generator(made_with, 0),
         _learner_factory(options, robot.n),
-        _scheme_settings(options),
+        _scheme_settings(options, told_parents(robot.tree.parents)),
         group=group if options.symmetries == "exact" else None,
         use_symmetries=options.symmetries != "none",
     )
@@ -197,14 +139,15 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     InputError
         If the discovery found no torque that the arm can hold by itself.
     """
-    options = result.options
-    if not result.scheme.torque_range.any():
+    let_chain_lead(result)
+    options, scheme = result.options, result.scheme
+    if not scheme.torque_range.any():
         what = f"number of torques held by itself, in {len(result.motions)} motions,"
         accepted = "some; guided physics leads an arm that holds none"
         raise InputError(result.robot.name, what, 0, accepted)
     if result.stops_before_learning:
         return
-    if result.scheme.home_torque is None and not options.is_guided:
+    if scheme.home_torque is None and not options.is_guided:
         accepted = f"{DIRECTIONS} or {LATTICE}: the arm cannot hold itself and has to be guided"
         raise InputError(result.robot.name, "strategy", options.strategy, accepted)
     arm = simulated_arm(result.robot, options.arm, 1)
@@ -223,14 +166,19 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
         moved: Any = (
             LimitedGuidedArm(limited, result.robot.limits) if options.is_guided else limited
         )
-        result.scheme.arm = moved
-        result.scheme.rng = random_generator(options.arm, 1)
+        scheme.arm = moved
+        scheme.rng = random_generator(options.arm, 1)
+        if options.leader == CHAIN:
+            scheme.make_learner = lambda group, span: scheme.chain
         _follow(result, progress)
         recorded.finish()
+        learner = scheme.learner
+        if isinstance(learner, CollectedSamples):
+            scheme.learner = learner.fitted_learner()
+        choose_model(result)
+        if options.leader == CHAIN:
+            result.curve = chain_curve(result)
     result.remarks += _torques_cut(limited, "learning")
-    learner = result.scheme.learner
-    if isinstance(learner, CollectedSamples):
-        result.scheme.learner = learner.fitted_learner()
 
 
 def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:
@@ -243,10 +191,14 @@ def run_experiment(options: RunOptions, out: Path, progress: Progress) -> RunOut
 def save_run_model(result: RunOutcome, out: Path) -> Path:
     """Write the learned model to ``out``; return the path of its JSON."""
     options = result.options
-    notes = {k: getattr(options, k) for k in ("learner", "symmetries", "strategy", "samples")}
+    notes = {k: getattr(options, k) for k in ("symmetries", "strategy", "samples")}
+    notes["learner"] = result.model_name
+    if result.model_name == CHAIN and result.knowledge is not None:
+        notes["verdict"] = result.knowledge.said
+        notes["known_after_poses"] = result.knowledge.known_after
     if not result.gate_passed:
         notes["learn_anyway"] = True
-    return save_learner(result.scheme.learner, result.robot, notes, out)
+    return save_learner(result.model, result.robot, notes, out)
 
 
 def save_learner(learner: Any, robot: Robot, notes: dict[str, Any], out: Path) -> Path:
@@ -258,7 +210,7 @@ def save_learner(learner: Any, robot: Robot, notes: dict[str, Any], out: Path) -
     return save_model(saved, out)
 
 
-def _scheme_settings(options: RunOptions) -> SchemeSettings:
+def _scheme_settings(options: RunOptions, parents: tuple[int, ...] | None) -> SchemeSettings:
     strategy = DIRECTIONS if options.strategy == LATTICE else options.strategy
     strategy = GUIDED_DIRECTIONS if options.is_guided else strategy
     return SchemeSettings(
@@ -267,6 +219,7 @@ def _scheme_settings(options: RunOptions) -> SchemeSettings:
         strategy=strategy,
         confirm=options.confirm,
         guided=options.discovering.physics == PhysicsMode.GUIDED,
+        parents=parents,
     )
 
 
@@ -288,16 +241,18 @@ def _learner_factory(options: RunOptions, joints: int) -> LearnerFactory:
 def _follow(result: RunOutcome, progress: Progress) -> None:
     test = DenseTest(result.robot, result.gravity)
     total = result.options.samples
-    counts = curve_counts(result.options.learner, total)
+    leads = result.options.leader == CHAIN  # a chain has a curve of its own, `chain_curve`
+    counts = frozenset[int]() if leads else curve_counts(result.options.learner, total)
     for step in result.scheme.learn():
         result.steps.append(step)
         count, note = len(result.steps), ""
         if count in counts:
             learner: Any = result.scheme.learner
             model = learner.fitted_learner() if hasattr(learner, "fitted_learner") else learner
-            point = test.point(count, model, step.explored)
-            result.curve.append(point)
-            note = f"RMSE {point.rmse:.4g} N m, largest error {point.largest:.4g} N m"
+            if is_usable(model):
+                point = test.point(count, model, step.explored)
+                result.curve.append(point)
+                note = f"RMSE {point.rmse:.4g} N m, largest error {point.largest:.4g} N m"
         progress(LEARNING, count, total, note)
 
 

@@ -12,9 +12,12 @@ from numpy.typing import NDArray
 from isotorque.learning.arm import OutcomeKind
 from isotorque.learning.files.software_versions import software_versions
 from isotorque.learning.learners.registry import EQUIVARIANT_LEARNERS
+from isotorque.learning.learners.rigid.chain_watch import AGREES
 from isotorque.learning.relations.reachable_relation import is_executable
 from isotorque.learning.static_torques.static_torque_set import StaticTorqueSet
-from isotorque.runs.experiment import RunOutcome
+from isotorque.runs.chain_model import taken_free, told
+from isotorque.runs.options.run_options import CHAIN
+from isotorque.runs.run_outcome import RunOutcome
 from isotorque.symbolic.level_sets.level_curves import level_curves
 from isotorque.symbolic.level_sets.level_set import level_set
 from isotorque.verify.models.largest_errors import default_tolerance
@@ -28,7 +31,7 @@ from isotorque.verify.relations.learned_symmetries import (
 )
 from isotorque.verify.report.figures.learning_curves import LearningCurve
 from isotorque.verify.report.figures.planar_links import planar_links
-from isotorque.verify.report.report_sections import StaticTorqueReport
+from isotorque.verify.report.report_sections import ChainReport, StaticTorqueReport
 from isotorque.verify.report.run_report import (
     LevelSetReport,
     RunReport,
@@ -98,10 +101,11 @@ def judge_run(run: RunOutcome) -> RunReport:
         ),
         curves=_curves(run),
         goal=PAPER_RMSE if run.robot.name == "2r" else None,
+        chain=_chain(run),
         model=_model(run),
         level_sets=_level_sets(run),
         verdicts=verdicts,
-        remarks=_guided(run) + run.remarks + run.robot.warnings,
+        remarks=_guided(run) + taken_free(run) + run.remarks + run.robot.warnings,
     )
 
 
@@ -124,7 +128,8 @@ def _setup(run: RunOutcome) -> RunSetup:
         "--seed",
         str(options.arm.seed),
     ]
-    command += ["--samples", str(options.samples), "--learner", options.learner]
+    command += ["--samples", str(options.samples)]
+    command += [] if options.chain else ["--learner", options.learner]
     command += [
         "--strategy",
         options.strategy,
@@ -151,7 +156,7 @@ def _setup(run: RunOutcome) -> RunSetup:
         physics=options.arm.physics,
         engine=options.arm.engine,
         strategy=options.strategy.replace("-", " ") + " (the arm guided)" * options.is_guided,
-        learner=options.learner,
+        learner=run.model_name or options.learner,
         symmetries=options.symmetries,
         seed=options.arm.seed,
         versions=tuple(sorted(software_versions().items())),
@@ -226,8 +231,32 @@ def _static_torques(run: RunOutcome) -> StaticTorqueReport:
     return replace(report, discovered=first, judgement=last)
 
 
+def _chain(run: RunOutcome) -> ChainReport | None:
+    known = run.knowledge
+    if known is None:
+        return None
+    accepted = known.learner is not None
+    beside = accepted and run.options.learner != CHAIN and bool(run.curve)
+    _, torques = run.scheme.chain.samples
+    return ChainReport(
+        accepted,
+        known.said,
+        known.poses,
+        known.known_after,
+        known.later,
+        known.largest_error,
+        known.largest_error <= AGREES * float(np.abs(torques).max(initial=0.0)),
+        told(run.scheme.settings.parents),
+        instead="" if accepted or run.model is None else run.model_name,
+        beside=run.options.learner if beside else "",
+        beside_samples=run.curve[-1].samples if beside else 0,
+        beside_rmse=run.curve[-1].rmse if beside else math.nan,
+    )
+
+
 def _curves(run: RunOutcome) -> tuple[LearningCurve, ...]:
-    if not run.curve:
+    led = run.options.leader == CHAIN  # one point, if that, is no curve
+    if len(run.curve) < (2 if led else 1):
         return ()
     samples = np.array([float(p.samples) for p in run.curve])
     rmse = np.array([p.rmse for p in run.curve])
@@ -235,7 +264,7 @@ def _curves(run: RunOutcome) -> tuple[LearningCurve, ...]:
 
 
 def _model(run: RunOutcome) -> ModelJudgement | None:
-    if run.scheme.learner is None:
+    if run.model is None:
         return None
     targets = [*paper_targets(run.robot)]
     domain = run.scheme.domain
@@ -249,9 +278,9 @@ def _model(run: RunOutcome) -> ModelJudgement | None:
     allowed = run.options.tolerance
     tolerance = default_tolerance(run.gravity, run.robot.limits) if allowed is None else allowed
     largest = float(run.gravity.potential.gradient_bound().max(initial=0.0))
-    claimed = run.options.learner in EQUIVARIANT_LEARNERS and run.scheme.group is not None
+    claimed = run.model_name in EQUIVARIANT_LEARNERS and run.scheme.group is not None
     judgement = verify_model(
-        run.scheme.learner,
+        run.model,
         run.gravity,
         limits=run.robot.limits,
         group=run.scheme.group,
@@ -271,9 +300,7 @@ def _model(run: RunOutcome) -> ModelJudgement | None:
 
 def _maintained(run: RunOutcome, result: TargetResult, targets: TargetSet) -> TargetResult:
     """Count the targets the arm keeps when placed there and given the learned torque."""
-    learner = run.scheme.learner
-    assert learner is not None
-    torques = np.asarray(learner.predict(targets.q))
+    torques = np.asarray(run.model.predict(targets.q))
     low, high = run.robot.limits.T
     inside = np.all((targets.q > low) & (targets.q < high), axis=1)
     held = sum(

@@ -14,20 +14,14 @@ from isotorque.learning.exploration.targets import Phase
 from isotorque.learning.learners.registry import ONLINE_LEARNERS, LearningTask, learner_by_name
 from isotorque.learning.recordings.recorded_simulation import RecordedSimulation
 from isotorque.learning.recordings.recording import Recording
-from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.sampling.reachable_lattice import ReachableLattice, reachable_lattice, visit
-from isotorque.runs.experiment import (
-    LEARNING,
-    Progress,
-    RunOutcome,
-    discover_symmetries,
-    prepare_run,
-    timed,
-)
+from isotorque.runs.chain_model import chain_curve, choose_model, is_usable, let_chain_lead
+from isotorque.runs.experiment import LEARNING, Progress, discover_symmetries, prepare_run, timed
 from isotorque.runs.learned_model import LearnedModel, model_of_run
 from isotorque.runs.learning_curve import CurvePoint, DenseTest, curve_counts
 from isotorque.runs.options.recorded_robot import keep_robot_file
-from isotorque.runs.options.run_options import RunOptions
+from isotorque.runs.options.run_options import CHAIN, RunOptions
+from isotorque.runs.run_outcome import RunOutcome
 from isotorque.runs.stages import DATABASE, random_generator, run_info, simulated_arm
 from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.domains.fundamental_domain import FundamentalDomain
@@ -94,6 +88,8 @@ def _learn(run: RunOutcome, out: Path, progress: Progress) -> None:
         run.remarks += (
             f"{options.samples} samples asked for, a lattice of {len(lattice.q)} taken",
         )
+    scheme.chain.partial_fit(q, torque)
+    let_chain_lead(run)
     if options.symmetries == "learned":
         run.remarks += _with_more_samples(run, q, torque)
     if run.stops_before_learning:
@@ -103,6 +99,10 @@ def _learn(run: RunOutcome, out: Path, progress: Progress) -> None:
     group = scheme.group
     if group is not None and group.rank:
         scheme.domain = FundamentalDomain.near(group, run.arm.home)
+    if run.options.leader == CHAIN:  # it has learned already, while the samples came in
+        choose_model(run)
+        run.curve = chain_curve(run)
+        return
     scheme.learner, curve = fitted_with_curve(
         options.learner,
         options.task(run.robot.n),
@@ -112,6 +112,7 @@ def _learn(run: RunOutcome, out: Path, progress: Progress) -> None:
         DenseTest(run.robot, run.gravity),
     )
     run.curve = list(curve)
+    choose_model(run)
 
 
 def _step(number: int, q: Array, torque: Array) -> ExplorationStep:
@@ -139,8 +140,9 @@ def _with_more_samples(run: RunOutcome, q: Array, torque: Array) -> tuple[str, .
     """
     group = run.scheme.group
     known = 1 if group is None else group.order
-    held, torques = run.scheme.samples
-    learned = learn_relations(np.concatenate([held, q]), np.concatenate([torques, torque]))
+    scheme = run.scheme
+    held, torques = scheme.samples
+    learned = scheme.relations(np.concatenate([held, q]), np.concatenate([torques, torque]))
     run.lattice_suffices = learned.decided and learned.order >= run.options.n_min
     free = learned.group.rank < learned.group.n
     if learned.order > known or (learned.order == known and (known > 1 or free)):
@@ -202,12 +204,6 @@ def fitted_with_curve(
         else:
             learner = learner_by_name(name, group, task).fit(q[:count], torque[:count])
         done = count
-        if count == len(q) or is_usable(learner):
+        if is_usable(learner):
             curve.append(test.point(count, learner))
     return learner, tuple(curve)
-
-
-def is_usable(learner: Any) -> bool:
-    """Whether a fitted learner answers: a rigid chain does not before it is accepted."""
-    verdict = getattr(learner, "verdict_", None)
-    return verdict is None or verdict.accepted

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from isotorque.runs.experiment import RunOutcome, save_learner
+from isotorque.runs.chain_model import chain_remarks
+from isotorque.runs.experiment import save_learner
 from isotorque.runs.learning_curve import CurvePoint
 from isotorque.runs.options.run_options import RunOptions
+from isotorque.runs.run_outcome import RunOutcome
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import Robot
 from isotorque.verify.models.verify_model import verify_model
@@ -102,13 +104,13 @@ def model_of_run(run: RunOutcome) -> LearnedModel:
     return LearnedModel(
         run.robot,
         run.gravity,
-        run.scheme.learner,
+        run.model,
         choices(run.options, run.gate_passed),
         len(run.steps),
         len(run.motions),
         1 if group is None else group.order,
         tuple(run.curve),
-        (*run.remarks, *missing_symmetries(run), *gate_remarks(run)),
+        (*run.remarks, *chain_remarks(run), *missing_symmetries(run), *gate_remarks(run)),
         run.details,
     )
 

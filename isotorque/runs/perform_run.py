@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from isotorque.runs.experiment import Progress, RunOutcome, run_experiment
+from isotorque.runs.experiment import Progress, run_experiment
 from isotorque.runs.lattice_learning import run_lattice
 from isotorque.runs.options.run_options import LATTICE, RunOptions
+from isotorque.runs.run_outcome import RunOutcome
 
 
 def perform(options: RunOptions, out: Path, progress: Progress) -> RunOutcome:

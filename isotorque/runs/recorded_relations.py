@@ -12,8 +12,8 @@ from isotorque.learning.recordings.recording_reader import RecordingReader, Sett
 from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
 from isotorque.learning.relations.reachable_relation import is_executable
 from isotorque.learning.relations.testing.judge_candidates import JudgedCandidate
-from isotorque.runs.experiment import RunOutcome
 from isotorque.runs.options.recorded_robot import as_recorded, recorded_robot
+from isotorque.runs.run_outcome import RunOutcome
 from isotorque.runs.stages import DATABASE
 from isotorque.symbolic.common.files import write_whole
 from isotorque.symbolic.common.robot_options import RobotOptions

@@ -27,12 +27,16 @@ MOST_DOUBLINGS = 80
 
 TRIES_PER_RAY = 8
 
+STEPS, WIDTH = 24, 3.0
+"""Torques about home, and how many times the scale of each joint they go from it."""
+
 
 def babble(
     arm: ProfileArm,
     rng: np.random.Generator,
     tries: int,
     search: Callable[[ProfileArm], Search] = find_home_torque,
+    scaled: Callable[[Array], bool] | None = None,
 ) -> Generator[Outcome, None, Array | None]:
     """Find out which torques the arm can hold, knowing nothing: yield every outcome.
 
@@ -46,6 +50,9 @@ def babble(
         Torques applied after the scale of each joint has been found.
     search
         Finds the home torque of an arm that does not rest under a minute torque.
+    scaled
+        ``scaled(torque scales)``, zero for joints that hold none: before the rays, torques about
+        home that move all joints at once are tried while it says so, ``STEPS`` of them at most.
 
     Yields
     ------
@@ -81,6 +88,10 @@ def babble(
     for joint in range(n):
         yield from _find_scale(arm, joint, centre, size, begun)
         begun = None
+    for _ in range(STEPS):
+        if scaled is None or not scaled(size) or not size.any():
+            break
+        yield arm.apply(centre + size * rng.uniform(-WIDTH, WIDTH, n))
     left = tries
     while left > 0 and size.any():
         direction = rng.normal(size=n)

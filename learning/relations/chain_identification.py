@@ -99,6 +99,26 @@ def identify_by_chain(
         angle_noise=0.0 if noise is None else noise.angle,
         max_starts=STARTS,
     ).fit(configurations, torques)
+    return relations_of_chain(learner, configurations, torques)
+
+
+def relations_of_chain(
+    learner: RigidChain, configurations: Array, torques: Array
+) -> LearnedSymmetries | None:
+    """The relations of a chain that was fitted to samples, if they can be claimed.
+
+    Parameters
+    ----------
+    learner : RigidChain
+        Fitted, accepted or not.
+    configurations, torques : (m, n) arrays
+        Static samples that it explains [rad], [N m].
+
+    Returns
+    -------
+    LearnedSymmetries or None
+        As of `identify_by_chain`.
+    """
     if not learner.verdict_.accepted or _shows_constants(learner, configurations, torques):
         return None
     found = learner.symmetries()

@@ -66,6 +66,7 @@ def totals(report: RunReport) -> dict[str, Any]:
         "relations_false": None if symmetry is None else symmetry.false,
         "relations_true": None if symmetry is None else symmetry.truth.order,
         "discovery_motions": None if discovery is None else discovery.profiles + discovery.babbling,
+        "chain_poses": None if report.chain is None else report.chain.known_after,
         "learning_samples": None if report.exploration is None else report.exploration.settled,
         "rmse_torque": None if model is None else plain(model.rmse),
         "rmse_by_joint": None if model is None else plain(model.rmse_by_joint),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,6 +98,58 @@ class DiscoveryReport:
     def gate_passed(self) -> bool:
         """Whether enough relations were known in the end, where they are needed."""
         return not self.needs_gate or bool(self.gates and self.gates[-1].passed)
+
+
+@dataclass(frozen=True)
+class ChainReport:
+    """What became of the rigid chain that was looked for in everything that settled.
+
+    Attributes
+    ----------
+    accepted : bool
+        Whether one was, and is the model.
+    said : str
+        The learner's verdict; where none was accepted, why.
+    poses : int
+        Poses that differ, of all samples.
+    known_after : int or None
+        The fewest of them after which the chain found agrees with all that came later.
+    later : int
+        Samples that came later.
+    largest_error : float
+        Largest torque error of that chain in them [N m].
+    exact : bool
+        Whether that is rounding.
+    told : str
+        What the learner was told of the arm.
+    instead : str
+        Name of the learner that the model is of where no chain was accepted; empty for none.
+    beside : str
+        Name of the learner that learned beside an accepted chain; empty for none.
+    beside_samples : int
+        Samples it learned from.
+    beside_rmse : float
+        Its torque RMSE on the dense set in the end [N m].
+    """
+
+    accepted: bool
+    said: str
+    poses: int
+    known_after: int | None
+    later: int
+    largest_error: float
+    exact: bool
+    told: str
+    instead: str = ""
+    beside: str = ""
+    beside_samples: int = 0
+    beside_rmse: float = math.nan
+
+    @property
+    def tried(self) -> str:
+        """How the chain was tried, in words."""
+        agree = "to rounding" if self.exact else f"within {self.largest_error:.2g} N m"
+        return f"{self.later} later samples agree with it {agree}"
 
 
 @dataclass(frozen=True, eq=False)

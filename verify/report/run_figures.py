@@ -147,5 +147,9 @@ def _learning(report: RunReport) -> Iterator[Picture]:
         yield Picture("fig10-explored", "learning", caption + left_out, figure, wide=wide)
     if report.curves:
         caption = "Torque error against the number of samples learned from (Fig. 13)."
-        figure = learning_curves(report.curves, goal=report.goal)
+        known = None
+        if report.chain is not None and report.chain.beside:
+            known = report.chain.known_after
+            caption += " Dotted: so many poses told a rigid chain everything."
+        figure = learning_curves(report.curves, goal=report.goal, known=known)
         yield Picture("fig13-learning-curve", "learning", caption, figure)

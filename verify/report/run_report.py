@@ -8,6 +8,7 @@ from isotorque.verify.models.verify_model import Array, ModelJudgement, TargetRe
 from isotorque.verify.relations.learned_symmetries import SymmetryReport
 from isotorque.verify.report.figures.learning_curves import LearningCurve
 from isotorque.verify.report.report_sections import (
+    ChainReport,
     DiscoveryReport,
     DomainReport,
     ExplorationReport,
@@ -96,6 +97,8 @@ class RunReport:
     curves : tuple of LearningCurve
     goal : float or None
         Torque RMSE to compare the curves with [N m].
+    chain : ChainReport or None
+        Where a rigid chain was looked for.
     model : ModelJudgement or None
     level_sets : LevelSetReport or None
     verdicts : tuple of Verdict
@@ -113,6 +116,7 @@ class RunReport:
     exploration: ExplorationReport | None = None
     curves: tuple[LearningCurve, ...] = ()
     goal: float | None = None
+    chain: ChainReport | None = None
     model: ModelJudgement | None = None
     level_sets: LevelSetReport | None = None
     verdicts: tuple[Verdict, ...] = field(default=())
@@ -137,7 +141,7 @@ class RunReport:
 
 
 def what_holds(report: RunReport) -> tuple[str, ...]:
-    """Say of relations, gate, static torques and model what holds and what does not.
+    """Say of relations, gate, static torques, chain and model what holds and what does not.
 
     Parameters
     ----------
@@ -153,7 +157,9 @@ def what_holds(report: RunReport) -> tuple[str, ...]:
         _relations(report.symmetry),
         _gate(report.discovery),
         _static_torques(report.static_torques),
+        _chain(report.chain),
         _model(report.model),
+        _beside(report.chain),
     ]
     return tuple(part for part in parts if part)
 
@@ -184,6 +190,25 @@ def _static_torques(torques: StaticTorqueReport | None) -> str:
     return (
         f"static torques: {judged.coverage:.0%} of those that {held} are admitted after discovery, "
         f"{judged.false_share:.0%} of the admitted are none of them"
+    )
+
+
+def _chain(chain: ChainReport | None) -> str:
+    if chain is None:
+        return ""
+    told = f"rigid chain, told {chain.told}"
+    if not chain.accepted:
+        instead = f"the model is {chain.instead}" if chain.instead else "nothing learned"
+        return f"{told}: not accepted, {chain.said}; {instead}"
+    return f"{told}: knew the whole map after {chain.known_after} poses, {chain.tried}"
+
+
+def _beside(chain: ChainReport | None) -> str:
+    if chain is None or not chain.beside:
+        return ""
+    return (
+        f"beside it {chain.beside}: RMSE {chain.beside_rmse:.3g} N m after "
+        f"{chain.beside_samples} samples"
     )
 
 

@@ -11,6 +11,7 @@ from isotorque.learning.exploration.registry import DIRECTIONS
 from isotorque.learning.simulator.settings import PhysicsMode
 from isotorque.runs.options.recorded_robot import as_recorded
 from isotorque.runs.options.run_options import (
+    CHAIN,
     LATTICE,
     ArmOptions,
     RunOptions,
@@ -108,7 +109,8 @@ def run_options(
         None: ``guided`` for a lattice, and for an arm that cannot hold itself where the strategy
         can lead it; else ``open_loop``.
     learner, samples
-        None: the default for the strategy and the robot's number of joints.
+        None: the default for the strategy and the robot's number of joints; without a learner the
+        model is a rigid chain where one is accepted.
     **others
         The other fields of `RunOptions`.
 
@@ -119,7 +121,9 @@ def run_options(
     """
     robot = RobotOptions.of(robot)
     loaded = load_robot(robot)
+    chain = learner is None
     learner = default_learner(strategy, loaded.n) if learner is None else learner
+    led_by_chain = default_samples(strategy, CHAIN) if samples is None else samples
     samples = default_samples(strategy, learner) if samples is None else samples
     guided = False
     if physics is None or strategy == LATTICE:
@@ -137,6 +141,8 @@ def run_options(
         strategy=strategy,
         discovery_arm=discovery,
         guided_by_need=guided,
+        chain=chain,
+        chain_samples=led_by_chain,
         **others,
     )
 

@@ -15,6 +15,9 @@ LATTICE = "lattice"
 STRATEGIES = (*EXPLORATIONS, LATTICE)
 LATTICE_SAMPLES, ONLINE_SAMPLES, BATCH_SAMPLES = 255, 3000, 500
 """Samples by default: the paper's lattice; learned one by one; collected for one fit."""
+CHAIN = "rigid-chain"
+CHAIN_SAMPLES = 100
+"""Samples by default where a rigid chain leads: it knows the torque, they try it."""
 
 LARGEST_SEED = 2**63 - 1
 """What a recording can hold."""
@@ -41,6 +44,8 @@ def default_samples(strategy: str, learner: str) -> int:
     """Return the number of samples where none is given."""
     if strategy == LATTICE:
         return LATTICE_SAMPLES
+    if learner == CHAIN:
+        return CHAIN_SAMPLES
     return BATCH_SAMPLES if learner in BATCH_LEARNERS else ONLINE_SAMPLES
 
 
@@ -109,6 +114,12 @@ class RunOptions:
         Torque error that the model is judged with [N m]; None: `default_tolerance`.
     guided_by_need : bool
         Whether the arm was found not to hold itself anywhere, and is guided for that.
+    chain : bool
+        Whether the model is to be a rigid chain learned from everything that settles, where one is
+        accepted; ``learner`` is then what is learned beside it, or, with more joints than the
+        paper's arms, what takes its place where none is.
+    chain_samples : int
+        Samples of the exploration that such a chain leads.
     """
 
     robot: RobotOptions
@@ -123,6 +134,8 @@ class RunOptions:
     learn_anyway: bool = False
     tolerance: float | None = None
     guided_by_need: bool = False
+    chain: bool = False
+    chain_samples: int = CHAIN_SAMPLES
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", RobotOptions.of(self.robot))
@@ -150,6 +163,8 @@ class RunOptions:
     @property
     def leader(self) -> str:
         """The learner that estimates the torques of an exploration."""
+        if self.chain and self.learner == CHAIN:  # it has learned already
+            return CHAIN
         return LEADER if self.learner in BATCH_LEARNERS else self.learner
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.learners.base import SavedLearner
-from isotorque.learning.learners.rigid.fitting.acceptance import fit_chain
+from isotorque.learning.learners.rigid.fitting.acceptance import EXACT, fit_chain
 from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit, fit_at
 from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     ChainParameters,
@@ -42,6 +42,11 @@ from isotorque.learning.learners.torque_score import TorqueRegressor
 from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
+
+ROUNDING_SHARE = 0.1
+"""Standard deviation of rounding, as a share of the largest that is called so (`EXACT`), ..."""
+MISFITS = 2.0
+"""... or as many times what the samples show of it, if that is more."""
 
 
 class RigidChain(TorqueRegressor, SavedLearner):
@@ -212,6 +217,30 @@ class RigidChain(TorqueRegressor, SavedLearner):
         assert self._snapped is not None
         return self._snapped[1]
 
+    def simplified(self) -> bool:
+        """Take the snapped chain for the chain, if it explains exact samples to rounding as well.
+
+        Returns
+        -------
+        bool
+            Whether it was taken. Only where samples are explained to rounding: what poses leave
+            nearly open, as where an axis is vertical and hardly moved, then has no error left.
+        """
+        fit = self.fit_
+        if fit.verdict is not FitStatus.ROUNDING:
+            return False
+        samples, others = fit.samples, (fit.model, fit.asked_gains, fit.verdict, fit.starts)
+        limit = EXACT * samples.largest_torque
+        # equilibria end where motions are slow enough: their errors are no multiple of rounding
+        size = max(ROUNDING_SHARE * limit, MISFITS * _misfit(fit.chain, samples))
+        rounding = samples.with_torque_noise(np.full(samples.n, size))
+        simple = snapped(fit_at(fit.chain, rounding, *others), LEVEL)
+        if _misfit(simple.chain, samples) > limit:
+            return False
+        self._take(fit_at(simple.chain, samples, *others))
+        self._snapped = (LEVEL, simple)
+        return True
+
     def symmetries(self, tolerance: float = 0.0) -> ChainSymmetries:
         """The complete symmetry group of the snapped chain, bounded for the measured arm.
 
@@ -375,3 +404,8 @@ class RigidChain(TorqueRegressor, SavedLearner):
         self._flat = flat
         self.n_outputs_ = outputs
         self.n_samples_seen_ = 0
+
+
+def _misfit(chain: ChainParameters, samples: ChainSamples) -> float:
+    """Root mean square of what a chain leaves of the torques [N m]."""
+    return float(np.sqrt(np.mean((chain.torque(samples.q) - samples.torque) ** 2)))

@@ -59,6 +59,7 @@ def learning_curves(
     iteration: int | None = None,
     published: Sequence[tuple[float, float]] = (),
     top: float | None = None,
+    known: int | None = None,
 ) -> Figure:
     """Draw torque RMSE against samples (Fig. 13).
 
@@ -76,6 +77,8 @@ def learning_curves(
         Samples and torque errors [N m] printed elsewhere, drawn as marks to compare with.
     top
         Upper end of a linear axis of errors [N m]; all errors by default.
+    known
+        Samples after which another learner knew everything, drawn as a dotted line.
 
     Returns
     -------
@@ -96,8 +99,19 @@ def learning_curves(
                 fontsize=8,
                 color=INK,
             )
+        if known is not None:
+            ax.axvline(known, color=INK, linewidth=0.9, linestyle=":", zorder=1)
+            ax.annotate(
+                f"rigid chain: {known}",
+                (known, 0.0),
+                xycoords=("data", "axes fraction"),
+                xytext=(3, 4),
+                textcoords="offset points",
+                fontsize=8,
+                color=INK,
+            )
         if logarithmic:
-            _logarithmic(ax, curves)
+            _logarithmic(ax, curves, known)
         else:
             ax.set_ylim(bottom=0.0, top=top)
         ax.set_xlabel("samples" if iteration is None else f"iterations of {iteration} samples")
@@ -155,8 +169,9 @@ def _draw(
         )
 
 
-def _logarithmic(ax: Axes, curves: Sequence[LearningCurve]) -> None:
+def _logarithmic(ax: Axes, curves: Sequence[LearningCurve], known: int | None = None) -> None:
     positive = [x for curve in curves for x in np.atleast_1d(curve.samples) if x > 0]
+    positive += [] if known is None else [known]
     if positive and max(positive) / min(positive) > 20:
         ax.set_xscale("log")
         ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

@@ -104,7 +104,7 @@ def fit_chain(
         return exact or fit.refused(FitStatus.MISFIT, _misfit(fit))
     fewer = _with_findable_gains(samples, model, CARRYING_SHARE[1])
     if not np.array_equal(fewer.free_gains, fit.model.free_gains):
-        fit.model, fit.found = fewer, []
+        fit.begin_anew(fewer)
     return _by_held_out(fit)
 
 
@@ -122,14 +122,12 @@ def _to_rounding(fit: StartSearch, starts: int) -> ChainFit | None:
     """The chain that explains all samples exactly, if a start finds it."""
     samples = fit.samples
     limit = max(EXACT * samples.largest_torque / samples.floor, 1.0) ** 2 * samples.equations
-    tried = 0
     while True:
-        for found in fit.found[tried:]:
+        for found in fit.not_looked_at():
             near = found.cost < 1e4 * limit
             better = polished(samples, found, fit.model) if near else found
             if better.cost <= limit:
                 return _exact(fit, better)
-        tried = len(fit.found)
         if fit.starts >= starts:
             return None
         fit.try_random()

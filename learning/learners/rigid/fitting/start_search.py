@@ -43,6 +43,7 @@ class StartSearch:
         self._rng = rng
         self.found: list[SearchedChain] = []
         self.starts = 0
+        self._looked_at = 0
 
     @property
     def exhausted(self) -> bool:
@@ -63,6 +64,16 @@ class StartSearch:
         """The same from random rotations."""
         self.starts += 1
         return self.try_start(self.model.random_start(self._rng))
+
+    def not_looked_at(self) -> list[SearchedChain]:
+        """Minima that this was not asked for before."""
+        new = self.found[self._looked_at :]
+        self._looked_at = len(self.found)
+        return new
+
+    def begin_anew(self, model: ChainModel) -> None:
+        """Forget all minima, and look for others with another model."""
+        self.model, self.found, self._looked_at = model, [], 0
 
     def best(self) -> SearchedChain:
         """The minimum that costs least so far."""
