@@ -109,7 +109,7 @@ class ChainWatch:
     ...     watch.add(q, [18.39 * np.cos(q[0]) + lower, lower])
     >>> known = watch.knowledge()
     >>> known.known_after, known.later
-    (4, 16)
+    (4, 15)
     """
 
     def __init__(
