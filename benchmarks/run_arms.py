@@ -96,18 +96,17 @@ class Row:
         ends = f"{self.status}", f"{self.seconds:.0f}"
         name = self.arm + "".join(f" `{option}`" for option in self.options)
         if self.report is None:
-            return name, "-", "-", "-", "-", f"-, {self.error}", *ends
+            return name, "-", "-", "-", "-", "-", f"-, {self.error}", *ends
         setup, totals = self.report["setup"], self.report["totals"]
-        model = self.report["model"]
-        largest = max(model["largest_torque"]) if "largest_torque" in model else None
-        rmse = f"{totals['rmse_torque']:.3g}"
-        rmse += "" if not largest else f" ({100 * totals['rmse_torque'] / largest:.2g} %)"
+        model, poses = self.report["model"], totals["chain_poses"]
+        rmse = "nothing learned" if model is None else f"{totals['rmse_torque']:.3g}"
         return (
             name,
             str(len(setup["joint_names"])),
             setup["physics"],
             f"{totals['relations_found']} of {totals['relations_true']}",
             str(totals["discovery_motions"]),
+            "not accepted" if poses is None else str(poses),
             rmse,
             *ends,
         )
@@ -119,6 +118,7 @@ HEADS = (
     "physics",
     "relations",
     "motions to find them",
+    "poses until a rigid chain knew the whole map",
     "torque RMSE [N m]",
     "exit",
     "processor time [s]",
