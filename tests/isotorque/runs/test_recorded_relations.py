@@ -41,8 +41,9 @@ def test_relations_that_the_limits_forbid_are_marked(report):
 
 def test_secondary_pairs_are_reported(tmp_path):
     out = tmp_path / "run"
-    # in this discovery the arm also settles in configurations of another primary set
-    assert status(["run", "2r", "--out", str(out), "--samples", "20", "--quiet"]) in (0, 1)
+    # in the discovery of this seed the arm also settles in configurations of another primary set
+    command = ["run", "2r", "--seed", "2", "--samples", "20", "--out", str(out), "--quiet"]
+    assert status(command) in (0, 1)
     symmetry = json.loads((out / "report.json").read_text())["symmetry"]
     assert status(["relations", str(out), "--quiet"]) == 0
     pairs = json.loads((out / "relations.json").read_text())["secondary_pairs"]
