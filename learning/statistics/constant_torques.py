@@ -21,6 +21,11 @@ DEPENDENT = 1e-6
 """Constants that the model holds itself, up to this share, are its own."""
 SPARE = 2
 """Degrees of freedom that must be left per joint, to know its noise."""
+SPARE_NOISY = 10.0
+"""The same where samples are not exact: errors of angles are larger where the torque is steep, and
+few samples do not show that."""
+EXACT = 1e-9
+"""Residuals below this share of the largest torque are rounding."""
 
 
 def constant_torques(features: Array, torque: Array, weight: Array) -> NDArray[np.intp]:
@@ -91,6 +96,8 @@ def constant_torques(features: Array, torque: Array, weight: Array) -> NDArray[n
             ]
         )
         chance[np.abs(found) <= NEGLIGIBLE * largest] = 1.0
+        few = (spare < SPARE_NOISY) & (level > (EXACT * largest) ** 2)
+        chance[few[joints]] = 1.0
         worst = int(np.argmax(chance))
         if chance[worst] < SIGNIFICANCE / n:
             break
