@@ -146,7 +146,7 @@ FIGURES = {
     "isotorque symmetries 3r": {"README.md": ["16"], "differences.md": ["16"]},
 }
 SLOW_FIGURES = {
-    "isotorque run 2r --out out/2r": {"README.md": ["0.018", "0.095", "3000", "8"]},
+    "isotorque run 2r --out out/2r": {"README.md": ["0.005", "3000", "8"]},
     "isotorque run 2r --out out/rls --learner recursive-least-squares --samples 200": {
         "README.md": ["0.00001", "200"]
     },

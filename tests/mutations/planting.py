@@ -103,8 +103,10 @@ class Copy:
         seconds = time.monotonic() - start
         if done.returncode == ALL_PASSED:
             return Result(Outcome.SURVIVED, "", seconds)
-        if done.returncode == TESTS_FAILED:
-            return Result(Outcome.KILLED, ", ".join(_failures(done.stdout)), seconds)
+        failed = _failures(done.stdout)
+        # a file that cannot be collected ends pytest -x with the status of a test that failed
+        if done.returncode == TESTS_FAILED and any("::" in test for test in failed):
+            return Result(Outcome.KILLED, ", ".join(failed), seconds)
         if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
             return Result(Outcome.KILLED, f"more than {SECONDS} s of processor time", seconds)
         return Result(Outcome.BROKEN, done.stdout[-2000:] + done.stderr[-2000:], seconds)
