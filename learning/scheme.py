@@ -265,7 +265,12 @@ class Scheme:
         settings = self.settings.discovery
         self.arm.go_home()
         babbling = babble(
-            self.arm, self.rng, settings.babbling, self._search(), self._wants_more_poses
+            self.arm,
+            self.rng,
+            settings.babbling,
+            self._search(),
+            self._wants_more_poses,
+            always=self.settings.guided,
         )
         self.home_torque = yield from self._taken(babbling)
         self.arm.go_home()

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from isotorque.learning.discovery.home_torque import holds_itself
+from isotorque.learning.exploration.guided_arm import LimitedGuidedArm
 from isotorque.learning.files.run_info import RunInfo
 from isotorque.learning.recordings.recording_reader import RecordingReader
 from isotorque.learning.simulator.settings import PhysicsMode, SensorNoise
@@ -49,7 +50,8 @@ def simulated_arm(robot: Robot, options: ArmOptions, stage: int) -> SimulatedArm
 def cannot_hold_itself(robot: Robot, options: ArmOptions) -> bool:
     """Say whether an arm has to be guided: no torque keeps it where it is put."""
     guided = replace(options, physics=PhysicsMode.GUIDED.value)
-    return not holds_itself(simulated_arm(robot, guided, TRIAL), random_generator(options, TRIAL))
+    arm = LimitedGuidedArm(simulated_arm(robot, guided, TRIAL), robot.limits)
+    return not holds_itself(arm, random_generator(options, TRIAL))
 
 
 def run_info(

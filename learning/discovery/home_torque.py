@@ -33,6 +33,8 @@ ROUNDS = 8
 ERROR, TRIES = 0.01, 8
 """Home counts as held where it is kept under torque errors of 1 % (normal, of the largest torque
 there) in half of the tries: no motor is as exact as a simulation."""
+NEAR = 0.5
+"""Where no torque at all keeps the arm at rest, errors are 1 % of what holds it so near [rad]."""
 
 
 def find_home_torque(arm: ProfileArm) -> Search:
@@ -129,7 +131,7 @@ def measure_home_torque(arm: Any, rng: np.random.Generator) -> Search:
     Parameters
     ----------
     arm
-        An arm that can be held from outside.
+        An arm that can be placed and held from outside (`LimitedGuidedArm` where limits are near).
     rng
         Source of the torque errors.
 
@@ -142,20 +144,28 @@ def measure_home_torque(arm: Any, rng: np.random.Generator) -> Search:
     -------
     (n,) array or None
         None where the arm falls from home under the torque that was measured there, or under one
-        that is off by 1 %: it has to be guided.
+        that is off by 1 %: it has to be guided. Zero where it rests under no torque, and stays at
+        rest under errors of that size.
     """
     _at_home(arm)
-    outcome = arm.apply(np.zeros(len(arm.q)))
-    yield outcome
-    if outcome.kind is OutcomeKind.SETTLED:
-        return np.zeros(len(outcome.q))
-    _at_home(arm)
-    held = arm.hold()
-    yield held
-    torque = np.array(held.torque, dtype=float)
+    resting = arm.apply(np.zeros(len(arm.q)))
+    yield resting
+    rests = resting.kind is OutcomeKind.SETTLED
+    if rests:
+        torque = np.zeros(len(resting.q))
+        size = yield from _sizes_about(arm, resting.q, rng)
+    else:
+        _at_home(arm)
+        held = arm.hold()
+        yield held
+        torque = np.array(held.torque, dtype=float)
+        size = np.full(len(torque), np.abs(torque).max())
     kept = 0
     for attempt in range(TRIES):
-        error = ERROR * np.abs(torque).max() * rng.standard_normal(len(torque))
+        if attempt == 0 and rests:
+            kept += 1
+            continue
+        error = ERROR * size * rng.standard_normal(len(torque))
         _at_home(arm)
         outcome = arm.apply(torque + (error if attempt else 0.0))
         yield outcome
@@ -164,6 +174,19 @@ def measure_home_torque(arm: Any, rng: np.random.Generator) -> Search:
         elif attempt == 0:
             return None
     return torque if 2 * kept >= TRIES else None
+
+
+def _sizes_about(
+    arm: Any, rest: Array, rng: np.random.Generator
+) -> Generator[Outcome, None, Array]:
+    """Root mean square of each joint's torque [N m] where the arm is held near where it rests."""
+    torques = []
+    for q in rng.uniform(rest - NEAR, rest + NEAR, (TRIES, len(rest))):
+        arm.place(q)
+        held = arm.hold()
+        yield held
+        torques.append(np.array(held.torque, dtype=float))
+    return np.sqrt(np.mean(np.square(torques), axis=0))
 
 
 def holds_itself(arm: Any, rng: np.random.Generator) -> bool:

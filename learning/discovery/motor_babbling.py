@@ -37,6 +37,7 @@ def babble(
     tries: int,
     search: Callable[[ProfileArm], Search] = find_home_torque,
     scaled: Callable[[Array], bool] | None = None,
+    always: bool = False,
 ) -> Generator[Outcome, None, Array | None]:
     """Find out which torques the arm can hold, knowing nothing: yield every outcome.
 
@@ -53,6 +54,9 @@ def babble(
     scaled
         ``scaled(torque scales)``, zero for joints that hold none: before the rays, torques about
         home that move all joints at once are tried while it says so, ``STEPS`` of them at most.
+    always
+        Whether ``search`` is asked first, even of an arm that rests under a minute torque: one
+        that rests but falls under any other torque is not seen by that.
 
     Yields
     ------
@@ -76,10 +80,11 @@ def babble(
     """
     n = len(arm.q)
     size, centre = np.zeros(n), np.zeros(n)
-    home, first = np.array(arm.q), arm.apply(FIRST_TORQUE * np.eye(n)[0])
-    yield first
-    begun: _Begun | None = (home, first)
-    if first.kind is not OutcomeKind.SETTLED:
+    begun: _Begun | None = None
+    if not always:
+        begun = np.array(arm.q), arm.apply(FIRST_TORQUE * np.eye(n)[0])
+        yield begun[1]
+    if begun is None or begun[1].kind is not OutcomeKind.SETTLED:
         found = yield from search(arm)
         if found is None:
             return None

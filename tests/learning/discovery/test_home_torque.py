@@ -1,5 +1,7 @@
 """Finding the torque that holds home: by releases alone, and with an arm that is held."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +14,8 @@ from isotorque.learning.discovery.home_torque import (
     holds_itself,
     measure_home_torque,
 )
+from isotorque.learning.discovery.motor_babbling import babble
+from isotorque.learning.exploration.guided_arm import LimitedGuidedArm
 from isotorque.learning.simulator.settings import SensorNoise
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
 from isotorque.symbolic.robots.load_robot import load_robot
@@ -94,3 +98,17 @@ def test_which_arms_hold_themselves(tmp_path):
         assert holds_itself(SimulatedArm(load_robot(name), "guided"), rng) is holds
     arm = propped([-0.9, 0.1], physics="guided")
     assert holds_itself(arm, rng)
+
+
+def test_an_arm_that_rests_but_falls_under_any_torque_does_not_hold_itself(tmp_path):
+    robot = load_robot(write_arm("talos-arm-like", tmp_path))
+    arm = LimitedGuidedArm(SimulatedArm(robot, physics="guided"), robot.limits)
+    outcomes, torque = result(measure_home_torque(arm, np.random.default_rng(0)))
+    assert outcomes[0].kind is OutcomeKind.SETTLED
+    assert torque is None
+    # nor is it taken for one that hangs because a minute torque leaves it at rest
+    search = partial(measure_home_torque, rng=np.random.default_rng(0))
+    _, torque = result(babble(arm, np.random.default_rng(1), 60, search, always=True))
+    assert torque is None
+    _, torque = result(babble(arm, np.random.default_rng(1), 0, search))
+    assert torque is not None
