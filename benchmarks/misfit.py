@@ -59,7 +59,7 @@ MOST_WRONG, SURE = 0.01, 100
 
 @dataclass(frozen=True)
 class Cell:
-    """What data sets of one kind have in common.
+    """Kind of data sets: arm, misfit, its size, number of rows.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Result:
-    """What a cell came to.
+    """Counts of right, wrong and missing claims of a cell.
 
     Attributes
     ----------

@@ -62,7 +62,7 @@ OPTION = re.compile(r"--(?:lock|joints|tip)[ =](?:'[^']*'|\S+)")
 
 @dataclass(frozen=True)
 class Row:
-    """How a run ended.
+    """End of a run.
 
     Attributes
     ----------

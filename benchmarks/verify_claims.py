@@ -1,4 +1,4 @@
-"""How often ``verify`` is wrong: claims near true ones, judged again with 50 digits.
+"""Errors of ``verify``: claims near true ones, judged again with 50 digits.
 
 ``python -m benchmarks.verify_claims`` judges 100,000 of them, ``--claims N`` as many as asked for,
 ``--write`` puts the table into docs/theory.md.
@@ -48,7 +48,7 @@ KINDS = ("true", "turns", "offset", "entry", "real entry", "sign")
 
 
 class Oracle:
-    """What is true of an arm, from its tree alone, in 50 digits.
+    """Truth about an arm, from its tree alone, in 50 digits.
 
     The potential is evaluated by forward kinematics on the 3^n angles 0 and +-2 pi/3, which
     determines all coefficients of frequencies -1, 0 and 1.
@@ -128,7 +128,7 @@ class Oracle:
 
 @dataclass
 class Truth:
-    """What the oracle says of a claim.
+    """Oracle's judgement of a claim.
 
     Attributes
     ----------

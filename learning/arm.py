@@ -13,7 +13,7 @@ Vector = NDArray[np.float64]
 
 
 class OutcomeKind(StrEnum):
-    """How the application of a torque ended."""
+    """End of the application of a torque."""
 
     SETTLED = "settled"
     LIMIT = "limit"
@@ -22,7 +22,7 @@ class OutcomeKind(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What one applied torque led to.
+    """Outcome of one applied torque.
 
     Attributes
     ----------

@@ -130,7 +130,7 @@ _Motions = Generator[Discovery, None, Array | None]
 
 @dataclass(frozen=True, eq=False)
 class GateDecision:
-    """What was known after a target torque, and whether it suffices to begin learning."""
+    """Knowledge after a target torque, and whether it suffices to begin learning."""
 
     targets: int
     order: int

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 
 class Status(StrEnum):
-    """How a claim is known, from the strongest to the weakest, and refuted."""
+    """Status of a claim, from the strongest to the weakest, and refuted."""
 
     PROVED = "proved"
     BOUNDED = "bounded"

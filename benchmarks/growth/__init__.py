@@ -1,1 +1,1 @@
-"""How costs grow with joints, samples, prototypes and the order of the symmetry group."""
+"""Growth of costs with joints, samples, prototypes and the order of the symmetry group."""

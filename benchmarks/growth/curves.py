@@ -26,7 +26,7 @@ SHORTEST = 1e-2
 
 @dataclass(frozen=True)
 class Work:
-    """What is timed; one call does it ``count`` times."""
+    """Timed work; one call does it ``count`` times."""
 
     run: Callable[[], Any]
     count: float = 1.0
@@ -77,7 +77,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Growth:
-    """How a curve grows over the upper half of its range.
+    """Growth of a curve over the upper half of its range.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Who takes part in the benchmark of learning costs, and what each is given to do."""
+"""Contestants of the benchmark of learning costs, and the work of each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What constraints are worth: 1,000 commands of every exploration, with the same learner."""
+"""Worth of constraints: 1,000 commands of every exploration, with the same learner."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Plan:
-    """How long to run and when to look.
+    """Length of a run, and the samples after which it is judged.
 
     Attributes
     ----------

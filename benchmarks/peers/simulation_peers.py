@@ -1,4 +1,4 @@
-"""What the simulator is timed beside: samples near equilibria, a plain loop, and MuJoCo."""
+"""Peers of the simulator: samples near equilibria, a plain loop, and MuJoCo."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ DISTANCE = 0.1
 
 @dataclass(frozen=True)
 class Starts:
-    """Where samples start and what they settle under."""
+    """Start configurations of samples and the torques they settle under."""
 
     q: np.ndarray
     torques: np.ndarray

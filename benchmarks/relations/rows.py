@@ -33,7 +33,7 @@ SECONDS = {"2r": 1.0, "3r": 5.0, "4r-planar": 60.0}
 
 @dataclass(frozen=True)
 class Case:
-    """What a row measures.
+    """Experiment that a row measures.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Row:
-    """What a case came to.
+    """Result of a case.
 
     Attributes
     ----------

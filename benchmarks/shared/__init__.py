@@ -1,1 +1,1 @@
-"""What several benchmarks use: arms, tables in documents, time limits, clear errors."""
+"""Shared by benchmarks: arms, tables in documents, time limits, clear errors."""

@@ -109,7 +109,7 @@ def export(
 
 @dataclass(frozen=True, eq=False)
 class _Export:
-    """What is to be written, and how far it is from the model on random configurations [N m]."""
+    """Exported text, and its largest difference from the model on random configurations [N m]."""
 
     form: TorqueForm
     robot: str

@@ -27,7 +27,7 @@ QUICK = 0.01
 
 @dataclass(frozen=True)
 class PaperOptions:
-    """What is compared, and with how much.
+    """Rows that are compared, and the effort spent on each.
 
     Attributes
     ----------

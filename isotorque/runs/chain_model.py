@@ -1,4 +1,4 @@
-"""Which model a run ends with: the rigid chain, if accepted, or what was learned beside it."""
+"""Choice of a run's model: the rigid chain, if accepted, or what was learned beside it."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from isotorque.verify.models.verify_model import verify_model
 
 @dataclass(frozen=True, eq=False)
 class LearnedModel:
-    """What ``isotorque learn`` ends with.
+    """Result of ``isotorque learn``.
 
     Attributes
     ----------

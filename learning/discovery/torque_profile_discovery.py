@@ -22,7 +22,7 @@ _Begun = tuple[Array, Outcome]
 
 @dataclass(frozen=True)
 class DiscoverySettings:
-    """How long and how widely to look for symmetric configurations.
+    """Effort and range of the search for symmetric configurations.
 
     Attributes
     ----------

@@ -22,7 +22,7 @@ Vector = NDArray[np.float64]
 
 
 class Learner(Protocol):
-    """What exploration needs of a learner (scikit-learn's interface)."""
+    """Learner as exploration needs it (scikit-learn's interface)."""
 
     def partial_fit(self, X: Any, y: Any, sample_weight: Any = None) -> Any:
         """Learn samples (m, n) [rad], (m, n) [N m] with weights (m,)."""

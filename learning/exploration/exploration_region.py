@@ -21,7 +21,7 @@ SWEEPS = 200
 
 
 class Polytope(Protocol):
-    """What is needed of a domain (``FundamentalDomain``)."""
+    """Domain as exploration needs it (``FundamentalDomain``)."""
 
     @property
     def halfspaces(self) -> Any:

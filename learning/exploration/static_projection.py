@@ -15,7 +15,7 @@ SAFE_SHARE = 0.7
 
 
 class StaticTorques(Protocol):
-    """What exploration needs of the set of static torques (``StaticTorqueSet``)."""
+    """Set of static torques as exploration needs it (``StaticTorqueSet``)."""
 
     def contains(self, torque: Any) -> Any:
         """Whether the torque (n,) [N m] is admissible."""

@@ -79,7 +79,7 @@ class Target:
 
 
 class TargetSource(Protocol):
-    """What an exploration asks for targets."""
+    """Source of an exploration's targets."""
 
     def next(self, rng: np.random.Generator) -> Target:
         """The next target."""

@@ -28,7 +28,7 @@ _TINY = 1e-300
 
 @dataclass(frozen=True, eq=False)
 class CrossValidation:
-    """How well samples are predicted by models that have not seen them.
+    """Errors of predictions by models that have not seen the samples.
 
     Attributes
     ----------

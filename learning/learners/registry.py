@@ -17,7 +17,7 @@ MANY_SAMPLES = 150
 
 @dataclass(frozen=True)
 class LearningTask:
-    """What is known of the samples before there are any; decides the settings of batch learners.
+    """Expected samples and torques of a task; they decide the settings of batch learners.
 
     Attributes
     ----------

@@ -19,7 +19,7 @@ Row = tuple[Any, ...]
 
 
 class CommandKind(StrEnum):
-    """What was asked of the arm."""
+    """Kind of a command to the arm."""
 
     START = "start"
     """Nothing yet: the arm as it was found."""

@@ -72,7 +72,7 @@ class SettledSamples(StaticSamples):
 
 @dataclass(frozen=True)
 class Count:
-    """How many commands of one kind ended in one way, and the time they took on the arm [s]."""
+    """Number of commands of one kind that ended in one way, and their time on the arm [s]."""
 
     part: str
     phase: str

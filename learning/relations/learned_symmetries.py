@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 class Knowledge(StrEnum):
-    """How a relation is known."""
+    """Source of the knowledge of a relation."""
 
     OBSERVED = "observed"
     """Pairs of recorded configurations obey it."""

@@ -147,7 +147,7 @@ def next_torque(
 
 
 class Released(Protocol):
-    """What an arm does when it is let go."""
+    """Motion of an arm that is let go."""
 
     @property
     def balanced(self) -> bool:

@@ -27,7 +27,7 @@ TIE = 1e-9
 
 
 class Spread(StrEnum):
-    """How points are spread over a region."""
+    """Evenness of points in a region."""
 
     KOROBOV = "korobov"
     GRID = "grid"
@@ -139,7 +139,7 @@ def lattice_samples(
 
 @dataclass(frozen=True, eq=False)
 class _Chooser:
-    """What becomes of points of a region: which are admissible, moved or not."""
+    """Choice among points of a region: admissible ones, moved or not."""
 
     region: SamplingRegion
     admit: Admit | None

@@ -112,7 +112,7 @@ class Hold:
 
 @dataclass(frozen=True, eq=False)
 class Release:
-    """What an arm does at first when it is released at rest under a torque.
+    """First motion of an arm that is released at rest under a torque.
 
     Attributes
     ----------

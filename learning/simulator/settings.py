@@ -13,7 +13,7 @@ _Choice = TypeVar("_Choice", bound=StrEnum)
 
 
 class PhysicsMode(StrEnum):
-    """What moves and holds the arm."""
+    """Physics that moves and holds the arm."""
 
     OPEN_LOOP = "open_loop"
     """Constant torques and viscous damping alone: only stable equilibria can be held."""
@@ -25,7 +25,7 @@ class PhysicsMode(StrEnum):
 
 
 class EngineName(StrEnum):
-    """Which code integrates the equations of motion."""
+    """Engine that integrates the equations of motion."""
 
     COMPILED = "compiled"
     """Compiled equations of this project: fast, the default."""
@@ -34,7 +34,7 @@ class EngineName(StrEnum):
 
 
 class SettleMode(StrEnum):
-    """Which configuration is the sample of a settled arm."""
+    """Configuration that is the sample of a settled arm."""
 
     FINISHED = "finished"
     """The equilibrium the arm is converging to, to 1e-11 of its largest torque."""
@@ -51,7 +51,7 @@ def _check_not_negative(settings: Any, names: tuple[str, ...]) -> None:
 
 @dataclass(frozen=True)
 class SettleRule:
-    """When a moving arm counts as settled.
+    """Rule by which a moving arm counts as settled.
 
     Attributes
     ----------

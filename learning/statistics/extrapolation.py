@@ -22,7 +22,7 @@ MARGIN = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Extrapolation:
-    """What a model answers beyond its data.
+    """Answers of a model beyond its data.
 
     Attributes
     ----------

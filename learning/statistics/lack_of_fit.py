@@ -59,7 +59,7 @@ class Alternative:
 
 @dataclass(frozen=True, eq=False)
 class LackOfFit:
-    """What the residuals of a fitted potential say.
+    """Lack of fit of a potential, as its residuals show it.
 
     Attributes
     ----------

@@ -25,7 +25,7 @@ MOST_SINGULAR = 16
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """What a search found.
+    """Result of a search.
 
     Attributes
     ----------

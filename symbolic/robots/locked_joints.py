@@ -17,7 +17,7 @@ AT_NEUTRAL_ONLY = ("planar", "floating")
 
 @dataclass(frozen=True)
 class JointOfRobot:
-    """What locking needs to know of a joint.
+    """Joint as locking needs it.
 
     Attributes
     ----------

@@ -187,7 +187,7 @@ class TorqueSigns:
 
 @dataclass(frozen=True, eq=False)
 class _Level:
-    """What becomes known when one more joint gets its sign."""
+    """Constraints that become decidable when one more joint gets its sign."""
 
     joint: int
     fresh: Integers  # the frequencies completed here

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Disagreement:
-    """How far measured torques are from the analytic ones.
+    """Differences between measured and analytic torques.
 
     Attributes
     ----------

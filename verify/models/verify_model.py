@@ -75,7 +75,7 @@ class TargetResult:
 
 @dataclass(frozen=True, eq=False)
 class ModelJudgement:
-    """What a learned model is worth.
+    """Judgement of a learned model.
 
     Attributes
     ----------

@@ -29,7 +29,7 @@ SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class RelationsFile:
-    """What a relations file claims; iterating gives the relations.
+    """Claims of a relations file; iterating gives the relations.
 
     Attributes
     ----------

@@ -47,7 +47,7 @@ class LevelSetReport:
 
 @dataclass(frozen=True)
 class Gate:
-    """What was known after a target torque (n_sym >= n_min of Fig. 8)."""
+    """Knowledge after a target torque (n_sym >= n_min of Fig. 8)."""
 
     targets: int
     order: int
@@ -57,7 +57,7 @@ class Gate:
 
 @dataclass(frozen=True, eq=False)
 class DiscoveryReport:
-    """What symmetry discovery did (Algorithm 1).
+    """Course of symmetry discovery (Algorithm 1).
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class DiscoveryReport:
 
 @dataclass(frozen=True)
 class ChainReport:
-    """What became of the rigid chain that was looked for in everything that settled.
+    """Rigid chain that was looked for in everything that settled.
 
     Attributes
     ----------
@@ -211,7 +211,7 @@ class DomainReport:
 
 @dataclass(frozen=True, eq=False)
 class ExplorationReport:
-    """What exploration did (Algorithm 2, Fig. 10).
+    """Course of exploration (Algorithm 2, Fig. 10).
 
     Attributes
     ----------

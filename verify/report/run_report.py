@@ -20,7 +20,7 @@ from isotorque.verify.verdict import Verdict, all_passed, sizes
 
 @dataclass(frozen=True)
 class RunSetup:
-    """What was run, with what.
+    """Robot, arm and options of a run.
 
     Attributes
     ----------

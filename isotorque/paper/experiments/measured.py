@@ -17,7 +17,7 @@ Number = float | int | None
 
 @dataclass(frozen=True)
 class Effort:
-    """How much of the paper's number of samples is spent.
+    """Share of the paper's number of samples that is spent.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Effort:
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """What an experiment found on one seed.
+    """Result of an experiment on one seed.
 
     Attributes
     ----------

@@ -36,7 +36,7 @@ MOST_LISTED = 64
 
 @dataclass(frozen=True)
 class ChainDataOptions:
-    """How to learn a chain from a recording.
+    """Options of learning a chain from a recording.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class ChainDataOptions:
 
 @dataclass(frozen=True, eq=False)
 class ChainFromData:
-    """What was learned, accepted or not.
+    """Chain learned from a recording, accepted or not.
 
     Attributes
     ----------

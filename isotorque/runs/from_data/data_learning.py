@@ -49,7 +49,7 @@ STAGE = "learning from data"
 
 @dataclass(frozen=True)
 class DataOptions:
-    """How to learn from a recording.
+    """Options of learning from a recording.
 
     Attributes
     ----------

@@ -51,7 +51,7 @@ def default_samples(strategy: str, learner: str) -> int:
 
 @dataclass(frozen=True)
 class ArmOptions:
-    """Which simulated arm, and with which randomness.
+    """Options of a simulated arm and its randomness.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class ArmOptions:
 
 @dataclass(frozen=True)
 class RunOptions:
-    """What a run is made with; two runs with equal options are equal, bit for bit.
+    """Options of a run; two runs with equal options are equal, bit for bit.
 
     Attributes
     ----------

@@ -44,7 +44,7 @@ MOST_ROWS = 500
 
 @dataclass(frozen=True, eq=False)
 class ChainKnowledge:
-    """What became of the chain after all samples.
+    """Chain after all samples, or why there is none.
 
     Attributes
     ----------

@@ -40,7 +40,7 @@ class VotedRelation:
 
 @dataclass(frozen=True, eq=False)
 class Tolerance:
-    """How far a pair may miss a relation.
+    """Tolerance of a pair's deviation from a relation.
 
     Attributes
     ----------

@@ -64,7 +64,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class PairSearch:
-    """What pairing finds in a recording.
+    """Findings of pairing in a recording.
 
     Attributes
     ----------

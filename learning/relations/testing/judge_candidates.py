@@ -31,7 +31,7 @@ FIXED = 1e-10  # singular values of relation minus identity below it are roundin
 
 
 class Judgement(StrEnum):
-    """What samples say of a candidate relation."""
+    """Judgement of a candidate relation by samples."""
 
     CONSISTENT = "consistent"
     """The samples would have shown a violation, and show none."""

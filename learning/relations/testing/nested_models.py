@@ -22,7 +22,7 @@ DEPENDENT = 1e-9  # singular values below it, relative to the largest, are round
 
 @dataclass(frozen=True, eq=False)
 class Scales:
-    """How far a joint's torques may be off, sample by sample.
+    """Scales of the errors of a joint's torques, sample by sample.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ LEVEL = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class TestedRelation:
-    """What samples say of one relation.
+    """One relation and its test by samples.
 
     Attributes
     ----------

@@ -11,7 +11,7 @@ from isotorque.learning.simulator.dynamics.equations import Array, Equations
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """What moves: friction, limits and free directions of an arm, beside its equations.
+    """Friction, limits and free directions of an arm, beside its equations.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Body:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """How a motion under a constant torque ended.
+    """End of a motion under a constant torque.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """How many motions ended, each from its own start under its own torque.
+    """Ends of many motions, each from its own start under its own torque.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Motions:
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """What a torque profile led to.
+    """Path of an arm under a torque profile.
 
     Attributes
     ----------

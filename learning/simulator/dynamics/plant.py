@@ -58,7 +58,7 @@ class Plant(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """When an arm counts as at rest, and how exactly its motion is followed.
+    """Rule of rest, and the accuracy with which motion is followed.
 
     Attributes
     ----------

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ChainFit:
-    """What a search for a chain ended with.
+    """Result of a search for a chain.
 
     Attributes
     ----------

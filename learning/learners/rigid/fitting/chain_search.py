@@ -55,7 +55,7 @@ class SearchedChain:
 
 @dataclass(frozen=True, eq=False)
 class ChainModel:
-    """Which chains are looked for.
+    """Family of chains that is searched.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class ChainModel:
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """Which offsets, twists and levers of a chain in canonical form may change.
+    """Offsets, twists and levers of a chain in canonical form that may change.
 
     Attributes
     ----------

@@ -8,7 +8,7 @@ from isotorque.symbolic.common.errors import InputError
 
 
 class FitStatus(StrEnum):
-    """How the search for a chain ended.
+    """End of the search for a chain.
 
     That several starts end in the same chain proves nothing: wide false minima are found again
     and again. Only a residual as small as the noise, or as rounding, speaks for a chain.

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class Shape(StrEnum):
-    """How the torque of a column depends on the angle of its joint."""
+    """Dependence of a column's torque on the angle of its joint."""
 
     OFFSET = "offset"
     """Constant: a zero error of the torque sensor. The unknown is in N m."""
