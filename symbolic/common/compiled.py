@@ -76,7 +76,8 @@ def module_names(package: Path) -> str:
     for folder, inside, files in os.walk(package, followlinks=True):
         inside.sort()
         modules = sorted(name for name in files if name.endswith(".py"))
-        names.update(f"{os.path.relpath(folder, package)}: {modules}\n".encode())
+        if modules:  # else a folder of caches, which this name must not depend on
+            names.update(f"{os.path.relpath(folder, package)}: {modules}\n".encode())
     return names.hexdigest()[:12]
 
 

@@ -36,6 +36,34 @@ def test_a_new_name_of_a_module_is_a_new_folder(tmp_path):
     assert module_names(tmp_path) != before
 
 
+def test_what_is_kept_does_not_change_where_it_is_kept(tmp_path):
+    (tmp_path / "room").mkdir()
+    (tmp_path / "room" / "module.py").write_text("x = 1")
+    before = module_names(tmp_path)
+    module_names.cache_clear()
+    kept = tmp_path / "room" / "__pycache__" / "numba-0123"
+    kept.mkdir(parents=True)
+    (kept / "module.nbi").touch()
+    assert module_names(tmp_path) == before
+
+
+def test_a_second_process_compiles_nothing(tmp_path):
+    (tmp_path / "half.py").write_text(HALF)
+    (tmp_path / "square.py").write_text(SQUARE.format(helper="half"))
+    code = (
+        "from pathlib import Path; import isotorque.symbolic.common.compiled as c;"
+        "c.PACKAGE = Path('.'); from square import whole; from half import Pair;"
+        "whole(Pair(3.0, 1.0)); print(sum(whole.stats.cache_hits.values()))"
+    )
+    hits = [
+        subprocess.run(
+            [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+        ).stdout
+        for _ in range(3)
+    ]
+    assert hits == ["0\n", "1\n", "1\n"]
+
+
 def test_modules_behind_links_count():
     folder = cache_folder(Path(__file__).parent)
     assert folder is not None
