@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
+ROUNDING = 1e-15
+"""Of a difference of torques, relative to the largest: looked at beyond the tolerance."""
+
 
 @dataclass(frozen=True, eq=False)
 class TorqueGroups:
@@ -93,9 +96,20 @@ def group_by_torque(q: Array, tau: Array, tolerance: float, smallest_share: floa
     magnitude, signs = magnitude[clear], np.sign(tau[clear])
     label = np.full(len(magnitude), -1, dtype=np.int64)
     distinct: list[Array] = []
+    # only samples whose first components are near can be alike
+    order = np.argsort(magnitude[:, 0], kind="stable")
+    first = magnitude[order, 0]
+    reach = tolerance + ROUNDING * first.max(initial=0.0)
+    low = np.searchsorted(first, magnitude[:, 0] - reach, "left")
+    high = np.searchsorted(first, magnitude[:, 0] + reach, "right")
     for i in range(len(magnitude)):
-        if label[i] < 0:
-            alike = (np.abs(magnitude - magnitude[i]) <= tolerance).all(axis=1) & (label < 0)
+        if high[i] - low[i] == 1:
+            label[i] = len(distinct)
+            distinct.append(magnitude[i])
+        elif label[i] < 0:
+            near = np.sort(order[low[i] : high[i]])
+            alike = (np.abs(magnitude[near] - magnitude[i]) <= tolerance).all(axis=1)
+            alike = near[alike & (label[near] < 0)]
             label[alike] = len(distinct)
             distinct.append(magnitude[alike].mean(axis=0))
     return TorqueGroups(
@@ -106,8 +120,13 @@ def group_by_torque(q: Array, tau: Array, tolerance: float, smallest_share: floa
 def pairs_by_signs(groups: TorqueGroups) -> list[Pairs]:
     """All ordered pairs within the groups, one entry per Y that occurs."""
     firsts, seconds = [], []
-    for number in range(groups.count):
-        members = np.flatnonzero(groups.torque == number)
+    several = np.flatnonzero(np.bincount(groups.torque, minlength=groups.count) > 1)
+    order = np.argsort(groups.torque, kind="stable")
+    ordered = groups.torque[order]
+    first = np.searchsorted(ordered, several, "left")
+    end = np.searchsorted(ordered, several, "right")
+    for begin, beyond in zip(first, end, strict=True):
+        members = order[begin:beyond]
         r, s = np.meshgrid(members, members, indexing="ij")
         off_diagonal = r != s
         firsts.append(r[off_diagonal])

@@ -45,8 +45,16 @@ class Undetermined(Exception):
 def torque_features(frequencies: Frequencies, q: Array) -> Array:
     """Gradients of cos(k.q) and sin(k.q), shape (N, n, 2 m), at q (N, n)."""
     phase = q @ frequencies.T
-    k = frequencies.T[None, :, :]
-    return np.concatenate([-np.sin(phase)[:, None] * k, np.cos(phase)[:, None] * k], axis=2)
+    return _features(frequencies, np.cos(phase), np.sin(phase))
+
+
+def _features(frequencies: Frequencies, cosine: Array, sine: Array) -> Array:
+    k = frequencies.T.astype(float)
+    count, m = cosine.shape
+    features = np.empty((count, len(k), 2 * m))
+    np.multiply(sine[:, None], -k, out=features[:, :, :m])
+    np.multiply(cosine[:, None], k, out=features[:, :, m:])
+    return features
 
 
 def solve(design: Array, target: Array, equations: int = 1) -> Array:
@@ -57,9 +65,15 @@ def solve(design: Array, target: Array, equations: int = 1) -> Array:
     Undetermined
         If the columns are linearly dependent.
     """
-    size = np.linalg.norm(design, axis=0)
+    size = np.sqrt(np.einsum("ij,ij->j", design, design))
     size = np.where(size > 0.0, size, 1.0)
-    solution, _, _, singular = np.linalg.lstsq(design / size, target, rcond=None)
+    rows, seen = design / size, target
+    width = design.shape[1]
+    if len(rows) > 2 * width:  # the singular values of a triangular root take less arithmetic
+        beside = np.concatenate([rows, seen[:, None]], axis=1)
+        triangle = np.asarray(np.linalg.qr(beside, mode="r"))
+        rows, seen = triangle[:, :width], triangle[:, width]
+    solution, _, _, singular = np.linalg.lstsq(rows, seen, rcond=None)
     open_ones = int((singular <= DEPENDENT * singular[0]).sum())
     if not open_ones:
         return np.asarray(solution / size)
@@ -72,11 +86,17 @@ def solve(design: Array, target: Array, equations: int = 1) -> Array:
 
 def stiffness_matrices(frequencies: Frequencies, coefficients: Array, q: Array) -> Array:
     """Hessian of the potential, shape (N, n, n)."""
-    m = len(frequencies)
     phase = q @ frequencies.T
-    weight = -(np.cos(phase) * coefficients[:m] + np.sin(phase) * coefficients[m:])
+    return _stiffness(frequencies, coefficients, np.cos(phase), np.sin(phase))
+
+
+def _stiffness(frequencies: Frequencies, coefficients: Array, cosine: Array, sine: Array) -> Array:
+    m, n = frequencies.shape
     k = frequencies.astype(float)
-    return np.einsum("Nm,mi,mj->Nij", weight, k, k, optimize=True)
+    squares = (k[:, :, None] * k[:, None, :]).reshape(m, n * n)
+    products = cosine @ (-coefficients[:m, None] * squares)
+    products -= sine @ (coefficients[m:, None] * squares)
+    return np.asarray(products.reshape(len(cosine), n, n))
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,15 +161,15 @@ def weighted_fit(
     unit = np.eye(n)
     held = np.zeros((0 if constants else n, len(start)))
     for _ in range(ITERATIONS):
-        stiffness = stiffness_matrices(frequencies, estimate[n:], true_q)
+        phase = true_q @ frequencies.T
+        cosine, sine = np.cos(phase), np.sin(phase)
+        stiffness = _stiffness(frequencies, estimate[n:], cosine, sine)
         transposed = np.swapaxes(stiffness, 1, 2)
         variance = noise.torque**2 * unit + noise.angle**2 * stiffness @ transposed
         whitening = np.linalg.inv(np.linalg.cholesky(variance))
         target = tau - np.einsum("Nij,Nj->Ni", stiffness, q - true_q)
-        columns = np.concatenate(
-            [np.broadcast_to(unit, (count, n, n)), torque_features(frequencies, true_q)], axis=2
-        )
-        design = (whitening @ columns).reshape(count * n, -1)
+        columns = np.concatenate([whitening, whitening @ _features(frequencies, cosine, sine)], 2)
+        design = columns.reshape(count * n, -1)
         white = (whitening @ target[:, :, None]).ravel()
         if len(held):  # as if constants had been measured: zero, far better than any torque
             held[:, :n] = HELD * np.abs(whitening).max() * unit
