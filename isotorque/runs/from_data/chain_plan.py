@@ -16,7 +16,11 @@ from isotorque.learning.files.saved_models import load_model
 from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.planning.information import parameter_mask
-from isotorque.learning.learners.rigid.planning.pose_plan import PosePlan, plan_poses
+from isotorque.learning.learners.rigid.planning.pose_plan import (
+    PosePlan,
+    plan_poses,
+    plan_poses_within,
+)
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.robots.kinematic_tree import KinematicTree
@@ -24,7 +28,8 @@ from isotorque.symbolic.robots.load_robot import Robot
 
 Array = NDArray[np.float64]
 
-CANDIDATES, REGION = 400, 200
+REGION = 400
+"""Random poses that stand for the region."""
 NOMINAL = 1e-3
 """Noise where none is known, relative to the largest torque: it scales what is expected."""
 
@@ -92,14 +97,12 @@ def plan_for_model(
     noise = samples.torque_noise
     if not noise.any() and not samples.angle_noise.any():
         noise = np.full(samples.n, NOMINAL * samples.largest_torque)
-    plan = plan_poses(
-        chain,
-        learner.fit_.model.free,
-        samples.with_torque_noise(noise),
-        *_choice(low, high, choice, seed),
-        count,
-        within,
-    )
+    region = np.random.default_rng(seed).uniform(low, high, (REGION, samples.n))
+    known = chain, learner.fit_.model.free, samples.with_torque_noise(noise)
+    if choice is None:
+        plan = plan_poses_within(*known, low, high, region, count, within, random_state=seed)
+    else:
+        plan = plan_poses(*known, choice, region, count, within)
     return ChainPlan(plan, saved.joint_names, low, high, noise)
 
 
@@ -117,16 +120,21 @@ def plan_for_robot(
     """
     chain = chain_of_tree(robot.tree)
     low, high = (np.clip(x, -np.pi, np.pi) for x in np.array(robot.limits, dtype=float).T)
-    candidates, region = _choice(low, high, choice, seed)
+    region = np.random.default_rng(seed).uniform(low, high, (REGION, robot.n))
     effort = np.asarray(robot.model.effortLimit, dtype=float)
     effort = np.where(effort > 0, effort, np.inf)
-    candidates = candidates[np.all(np.abs(chain.torque(candidates)) <= effort, axis=1)]
-    if not len(candidates):
-        raise InputError(robot.name, "poses within effort limits", 0, "at least one")
     noise = np.full(robot.n, NOMINAL * float(np.abs(chain.torque(region)).max()))
     nothing = np.zeros((0, robot.n))
     seen = ChainSamples(nothing, nothing, noise, np.zeros(robot.n), np.zeros(0))
-    plan = plan_poses(chain, parameter_mask(robot.n), seen, candidates, region, count, within)
+    known = chain, parameter_mask(robot.n), seen
+    if choice is None:
+        box = low, high, region
+        plan = plan_poses_within(*known, *box, count, within, effort=effort, random_state=seed)
+    else:
+        held = choice[np.all(np.abs(chain.torque(choice)) <= effort, axis=1)]
+        if not len(held):
+            raise InputError(robot.name, "poses within effort limits", 0, "at least one")
+        plan = plan_poses(*known, held, region, count, within)
     return ChainPlan(plan, robot.joint_names, low, high, noise)
 
 
@@ -196,10 +204,3 @@ def chain_of_tree(tree: KinematicTree) -> ChainParameters:
 
 def _turning_z_to(direction: Array) -> Array:
     return np.asarray(Rotation.align_vectors([direction], [[0.0, 0.0, 1.0]])[0].as_matrix())
-
-
-def _choice(low: Array, high: Array, choice: Array | None, seed: int) -> tuple[Array, Array]:
-    rng = np.random.default_rng(seed)
-    region = rng.uniform(low, high, (REGION, len(low)))
-    candidates = rng.uniform(low, high, (CANDIDATES, len(low))) if choice is None else choice
-    return candidates, region

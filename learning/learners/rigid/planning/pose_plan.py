@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize
 
-from isotorque.learning.learners.rigid.fitting.chain_parameters import (
-    ChainParameters,
-    raw_directions,
-)
+from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
+from isotorque.learning.learners.rigid.planning.pose_design import PoseDesign
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 POWER = 4
-"""Variances to this power are added up: a maximum that notices the second largest too."""
-EXCHANGES = 1
+"""Variances to this power are added up in choosing from a list."""
+EXCHANGES = 2
 """Rounds in which each chosen pose may be exchanged for a better one."""
+STARTS, KEPT = 4, 1
+"""Random sets of poses that are moved at first, and the best of them that are moved on."""
+STAGES = ((1.0, 40), (4.0, 40), (16.0, 80))
+"""Power of the variances and steps at most: the mean error first, nearly the largest last."""
+EFFORT = 0.99
+"""Share of an effort limit that poses are moved within."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,12 +58,12 @@ def plan_poses(
     count: int,
     within: float = 0.0,
 ) -> PosePlan:
-    """Choose poses that lower the largest standard error of the torque most, one by one.
+    """Choose from a list the poses that lower the largest standard error of the torque most.
 
     Parameters
     ----------
     chain : ChainParameters
-        What is known: derivatives are taken there.
+        What is known: derivatives are taken there, and near it (`PoseDesign`).
     free : (P,) bool array
         Which of its parameters are unknown (`Information`).
     seen : ChainSamples
@@ -73,9 +79,8 @@ def plan_poses(
 
     Notes
     -----
-    What no sample has told yet is taken to be as unknown as a rad, or as the largest torque, so
-    that a plan can begin with nothing. Each candidate's effect on the covariance is exact for the
-    linearised chain (Woodbury's formula).
+    One pose after the other is added, then each is exchanged for a better one while there is one.
+    Each candidate's effect on the covariance is exact for the linearised chain.
 
     Raises
     ------
@@ -97,75 +102,188 @@ def plan_poses(
     """
     if not len(candidates) or not len(region):
         raise InputError("plan", "poses to choose from", 0, "at least one")
-    covariance = _prior(chain, free, seen)
-    if len(seen.q):
-        rows = _rows(chain, free, seen, seen.q)
-        covariance = np.asarray(np.linalg.inv(np.linalg.inv(covariance) + rows.T @ rows))
-    n, p = chain.n, int(free.sum())
-    offered = _rows(chain, free, seen, candidates).reshape(len(candidates), n, p)
-    slopes = chain.derivatives(region, raw_directions(n)).by_parameters()[:, :, free].reshape(-1, p)
-    variance = _variances(slopes, covariance)
-    before = float(np.sqrt(variance.max()))
-    chosen: list[int] = []
-    expected: list[float] = []
-    start = covariance
-    while len(chosen) < count and 3.0 * np.sqrt(variance.max()) > within:
-        best = _most_telling(covariance, offered, slopes)
-        chosen.append(best)
-        covariance = _lowered(covariance, offered[best])
+    design = PoseDesign.of(chain, free, seen, region)
+    offered = design.rows(candidates)
+
+    def chosen(number: int) -> list[int]:
+        picked: list[int] = []
+        for _ in range(number):
+            picked.append(_best(design, offered, picked))
         for _ in range(EXCHANGES):
-            changed = False
-            for k in range(len(chosen)):
-                others = start
-                for c in (*chosen[:k], *chosen[k + 1 :]):
-                    others = _lowered(others, offered[c])
-                best = _most_telling(others, offered, slopes)
-                changed |= best != chosen[k]
-                chosen[k] = best
-                covariance = _lowered(others, offered[best])
-            if not changed:
+            before = list(picked)
+            for k in range(number):
+                picked[k] = _best(design, offered, [*picked[:k], *picked[k + 1 :]])
+            if picked == before:
                 break
-        variance = _variances(slopes, covariance)
-        expected.append(float(np.sqrt(variance.max())))
-    return PosePlan(candidates[chosen].reshape(-1, n), before, np.array(expected))
+        return picked
+
+    return _shortest(design, lambda number: candidates[chosen(number)], count, within)
 
 
-def _variances(slopes: Array, covariance: Array) -> Array:
-    return np.maximum(np.sum((slopes @ covariance) * slopes, axis=1), 0.0)
+@single_thread()
+def plan_poses_within(
+    chain: ChainParameters,
+    free: Mask,
+    seen: ChainSamples,
+    low: Array,
+    high: Array,
+    region: Array,
+    count: int,
+    within: float = 0.0,
+    *,
+    effort: Array | None = None,
+    random_state: int = 0,
+) -> PosePlan:
+    """Find the poses in a box that lower the largest standard error of the torque most.
+
+    Parameters
+    ----------
+    chain, free, seen, region, count, within
+        As of `plan_poses`.
+    low, high : (n,) arrays
+        Ends of the box [rad].
+    effort : (n,) array, optional
+        Largest torque at each joint that a pose may need [N m].
+    random_state : int
+        Seed of the poses to start from.
+
+    Notes
+    -----
+    All poses are moved at the same time (limited-memory quasi-Newton, bounded), from several
+    random sets: first to the least mean variance, then to nearly the least largest one. On the
+    panda eight of them leave an error that choosing one by one from hundreds of random poses
+    leaves with ten.
+
+    Raises
+    ------
+    InputError
+        If effort limits leave no pose.
+
+    Examples
+    --------
+    >>> sideways = [[[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]]
+    >>> pendulum = ChainParameters.of(sideways, [[6.0, 0.0]])
+    >>> nothing, one = np.zeros((0, 1)), np.ones(1)
+    >>> seen = ChainSamples(nothing, nothing, 0.1 * one, 0.0 * one, np.zeros(0))
+    >>> region = np.linspace(-3, 3, 20)[:, None]
+    >>> free = np.array([True] * 4 + [False])
+    >>> plan = plan_poses_within(pendulum, free, seen, -3 * one, 3 * one, region, 2)
+    >>> bool(np.abs(np.sin(np.ptp(plan.poses))) > 0.9)  # a quarter of a turn apart, or three
+    True
+    """
+    rng = np.random.default_rng(random_state)
+    design = PoseDesign.of(chain, free, seen, region)
+    most = np.full(chain.n, np.inf) if effort is None else np.asarray(effort, dtype=float)
+
+    def allowed(poses: Array) -> Mask:
+        return np.asarray(np.all(np.abs(chain.torque(poses)) <= most, axis=1))
+
+    spare = _spare_poses(rng, low, high, allowed)
+
+    def moved(number: int) -> Array:
+        sets = [spare[rng.integers(len(spare), size=number)] for _ in range(STARTS)]
+        for power, steps in STAGES:
+            found = [_moved(design, chain, poses, low, high, most, power, steps) for poses in sets]
+            found.sort(key=lambda pair: pair[0])
+            sets = [poses for _, poses in found[:KEPT]]
+        best = sets[0]
+        outside = np.flatnonzero(~allowed(best))
+        if len(outside):
+            offered = design.rows(np.concatenate([best, spare]))
+            inside = list(range(number, number + len(spare)))
+            picked = [k for k in range(number) if k not in outside]
+            for _ in outside:
+                picked.append(_best(design, offered, picked, inside))
+            best = np.concatenate([best, spare])[picked]
+        return best
+
+    return _shortest(design, moved, count, within)
 
 
-def _most_telling(covariance: Array, offered: Array, slopes: Array) -> int:
-    """The candidate after which the largest variances are least."""
-    across = slopes @ covariance
-    variance = np.sum(across * slopes, axis=1)
-    best, least = -1, np.inf
-    for c, row in enumerate(offered):
-        factor = np.linalg.cholesky(np.eye(len(row)) + row @ covariance @ row.T)
-        lowered = np.linalg.solve(factor, row @ across.T)
-        after = np.maximum(variance - np.sum(lowered**2, axis=0), 0.0)
-        value = float(np.sum(after**POWER))
-        if value < least:
-            best, least = c, value
-    return best
+def _spare_poses(
+    rng: np.random.Generator, low: Array, high: Array, allowed: Callable[[Array], Mask]
+) -> Array:
+    """Random poses of the box that may be used."""
+    poses = rng.uniform(low, high, (2000, len(low)))
+    poses = poses[allowed(poses)][:200]
+    if not len(poses):
+        raise InputError("plan", "poses within effort limits", 0, "at least one")
+    return poses
 
 
-def _lowered(covariance: Array, row: Array) -> Array:
-    """The covariance after one more sample (Woodbury's formula)."""
-    gain = covariance @ row.T
-    return np.asarray(covariance - gain @ np.linalg.solve(np.eye(len(row)) + row @ gain, gain.T))
+def _moved(
+    design: PoseDesign,
+    chain: ChainParameters,
+    poses: Array,
+    low: Array,
+    high: Array,
+    most: Array,
+    power: float,
+    steps: int,
+) -> tuple[float, Array]:
+    """Poses moved to lower the criterion; torques beyond the limits cost."""
+    shape = poses.shape
+    bounded = np.isfinite(most)
+
+    def cost(x: Array) -> tuple[float, Array]:
+        q = x.reshape(shape)
+        value, slope = design.value_and_slope(q, power)
+        if bounded.any():
+            torque = chain.torque(q)[:, bounded]
+            beyond = np.maximum(np.abs(torque) / (EFFORT * most[bounded]) - 1.0, 0.0)
+            value += 1e3 * float(np.sum(beyond**2))
+            pull = 2e3 * beyond * np.sign(torque) / (EFFORT * most[bounded])
+            slope = slope + np.einsum("kj,kji->ki", pull, chain.stiffness(q)[:, bounded])
+        return value, slope.ravel()
+
+    ends = np.stack([np.tile(low, shape[0]), np.tile(high, shape[0])], axis=1)
+    options = {"maxiter": steps}
+    found = minimize(cost, poses.ravel(), jac=True, method="L-BFGS-B", bounds=ends, options=options)
+    return float(found.fun), np.clip(np.reshape(found.x, shape), low, high)
 
 
-def _prior(chain: ChainParameters, free: Mask, seen: ChainSamples) -> Array:
-    n = chain.n
-    size = max(float(np.abs(chain.levers).max()), seen.largest_torque, 1e-9)
-    scale = np.ones(len(free))
-    scale[2 * n : 4 * n] = size
-    scale[5 * n :] = size
-    return np.diag(scale[free] ** 2)
+def _best(
+    design: PoseDesign,
+    offered: tuple[Array, ...],
+    chosen: list[int],
+    among: list[int] | None = None,
+) -> int:
+    """The offered sample that lowers the criterion most beside those that are chosen."""
+    covariances = design.covariances([rows[chosen] for rows in offered])
+    if among is None:
+        return int(np.argmin(design.after_each(covariances, offered, POWER)))
+    left = [rows[among] for rows in offered]
+    return among[int(np.argmin(design.after_each(covariances, left, POWER)))]
 
 
-def _rows(chain: ChainParameters, free: Mask, like: ChainSamples, q: Array) -> Array:
-    """Whitened derivatives (m n, p) of samples at q with the noise of others."""
-    samples = ChainSamples(q, chain.torque(q), like.torque_noise, like.angle_noise, np.ones(len(q)))
-    slopes = chain.derivatives(q, raw_directions(chain.n)).by_parameters()[:, :, free]
-    return (samples.whitening(chain) @ slopes).reshape(samples.equations, -1)
+def _shortest(
+    design: PoseDesign, poses_of: Callable[[int], Array], count: int, within: float
+) -> PosePlan:
+    """The plan of the fewest poses that suffice, ``count`` at most, the most telling ones first."""
+    n = design.chains[0].n
+    before = design.largest_error(design.covariances(design.rows(np.zeros((0, n)))))
+    if 3.0 * before <= within:
+        return PosePlan(np.zeros((0, n)), before, np.zeros(0))
+    plan = _in_order(design, poses_of(count), before)
+    low, high = 0, count  # the first is known not to suffice
+    while within > 0.0 and 3.0 * plan.expected[-1] <= within and high - low > 1:
+        middle = (low + high) // 2
+        fewer = _in_order(design, poses_of(middle), before)
+        if 3.0 * fewer.expected[-1] <= within:
+            plan, high = fewer, middle
+        else:
+            low = middle
+    return plan
+
+
+def _in_order(design: PoseDesign, poses: Array, before: float) -> PosePlan:
+    """The same poses, the most telling one first, and so on."""
+    offered = design.rows(poses)
+    order: list[int] = []
+    expected = []
+    while len(order) < len(poses):
+        left = [k for k in range(len(poses)) if k not in order]
+        order.append(_best(design, offered, order, left))
+        chosen = design.covariances([rows[order] for rows in offered])
+        expected.append(design.largest_error(chosen))
+    return PosePlan(poses[order], before, np.array(expected))
