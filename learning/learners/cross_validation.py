@@ -15,7 +15,9 @@ from isotorque.symbolic.common.errors import InputError
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-FOLDS = 5
+LEAVE_ONE_OUT, FOLDS = 20, 5
+"""Up to so many poses each is a part of its own; more are dealt into so many parts. A model of 6
+poses is worse than one of 8 by far, and what it errs by says little of the other."""
 ROUNDS = 3
 """Most rounds of looking for outliers."""
 SUSPECT, STRICT = (2.0, 3.0), (4.0, 9.0)
@@ -77,7 +79,7 @@ def cross_validate(
     torque: ArrayLike,
     rng: np.random.Generator,
     *,
-    folds: int = FOLDS,
+    folds: int | None = None,
     poses: Poses | None = None,
 ) -> CrossValidation:
     """Cross-validate a learner, and find samples that do not fit the others.
@@ -91,7 +93,8 @@ def cross_validate(
     rng
         Deals the poses into parts.
     folds
-        Number of parts, at most one per pose.
+        Number of parts, at most one per pose; by default every pose is left out by itself, or
+        where they are more than ``LEAVE_ONE_OUT``, ``FOLDS`` parts in turn.
     poses
         Which samples were recorded in one pose; `group_poses` tells where it is not given.
 
@@ -107,7 +110,9 @@ def cross_validate(
     Notes
     -----
     Samples of one pose are in one part, or the model would be asked for what it has seen. They
-    also count once, in the error and in what is usual among the errors.
+    also count once, in the error and in what is usual among the errors. That error is the one to
+    expect at further poses like these, of a model of as many poses as are left in; nothing is said
+    of poses that no pose is near.
 
     A sample stands out if the error of one of its torques is ``STRICT``: 9 times the median of that
     joint's errors, which for normal errors is 6 standard deviations, and 4 spreads above it on a
@@ -132,6 +137,8 @@ def cross_validate(
     poses = group_poses(samples) if poses is None else poses
     if poses.count < 2:
         raise InputError("held out", "number of poses", poses.count, "at least 2")
+    if folds is None:
+        folds = poses.count if poses.count <= LEAVE_ONE_OUT else FOLDS
     folds = min(folds, poses.count)
     part = (rng.permutation(poses.count) % folds)[poses.label]
     outliers = np.zeros(len(samples), dtype=bool)

@@ -187,6 +187,20 @@ STATISTICS = (
         "an alternative may be larger than its estimate",
     ),
     Mutation(
+        "learning/learners/cross_validation.py",
+        "folds = poses.count if poses.count <= LEAVE_ONE_OUT else FOLDS",
+        "folds = FOLDS",
+        ("tests/learning/learners/test_cross_validation.py",),
+        "few poses are left out one by one",
+    ),
+    Mutation(
+        "learning/learners/cross_validation.py",
+        "part = (rng.permutation(poses.count) % folds)[poses.label]",
+        "part = rng.permutation(len(samples)) % folds",
+        ("tests/learning/learners/test_cross_validation.py",),
+        "rows of one pose share a part",
+    ),
+    Mutation(
         "learning/statistics/poses.py",
         "CHANCE = 1e-4",
         "CHANCE = 1.0",

@@ -23,8 +23,14 @@ def outlier_remarks(tried: CrossValidation | None, dropped: bool, count: int) ->
     """Say what held out rows tell: the error, and which rows do not fit the others."""
     if tried is None:
         return ("one pose only: no error on held out rows",)
-    words = f"error on held out rows {tried.rmse:.4g} N m ({tried.folds}-fold cross-validation"
-    words += f" by pose: {tried.poses.count} poses)" if tried.poses.repeated else ")"
+    one = "pose" if tried.poses.repeated else "row"
+    way = f"{tried.folds}-fold cross-validation"
+    if tried.folds == tried.poses.count:
+        way = f"every {one} left out in turn"
+    elif tried.poses.repeated:
+        way += " by pose"
+    words = f"error on held out rows {tried.rmse:.4g} N m ({way}"
+    words += f": {tried.poses.count} poses)" if tried.poses.repeated else ")"
     if not tried.outliers.any():
         return (f"{words}; no outliers",)
     rows = ", ".join(str(i + 1) for i in tried.worst(count))
