@@ -177,8 +177,8 @@ class LearnedSymmetries:
         said = f"beside gravity the samples show {self.lack.said}"
         if self.of_gravity_alone:
             said += (
-                f"; {self.of_gravity_alone} relations that flip it hold of gravity alone, not of "
-                "the measured torque, and are left out"
+                f"; {self.of_gravity_alone} relations that flip such a joint hold of gravity "
+                "alone, not of the measured torque, and are left out"
             )
         return said
 

@@ -13,6 +13,10 @@ from isotorque.learning.relations.potential.potential_fit import tail_probabilit
 
 Array = NDArray[np.float64]
 
+OR_FRICTION = (
+    ", or friction approached from one side: not to be told apart without approach directions"
+)
+"""Said wherever constants are named: joints that always stop moving the same way show the same."""
 SIGNIFICANCE = 1e-4
 """Chance with which a constant is seen on any joint where there is none."""
 NEGLIGIBLE = 1e-6

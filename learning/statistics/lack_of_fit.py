@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
+from isotorque.learning.statistics.constant_torques import OR_FRICTION
 from isotorque.learning.statistics.poses import Poses
 
 Array = NDArray[np.float64]
@@ -143,7 +144,8 @@ def lack_of_fit(
     >>> examined(tau).said
     ''
     >>> examined(tau + [0.0, 0.3]).said
-    'a constant torque of +0.304 N m on joint 2 (standard error 0.003)'
+    'a constant torque of +0.304 N m on joint 2 (standard error 0.003), or friction approached from
+    one side: not to be told apart without approach directions'
     >>> examined(tau + [0.0, 0.2] * q).said
     'a torque that grows with its angle (a spring), +0.194 N m/rad on joint 2'
     """
@@ -158,7 +160,7 @@ def lack_of_fit(
         f"{fit.offset_errors[j]:.1g})"
         for j in joints
     )
-    misfit, said = nothing, offset
+    misfit, said = nothing, f"{offset}{OR_FRICTION}" if offset else ""
     if worst is not None and worst.p_value < SIGNIFICANCE / len(found):
         if worst.misfit.max() > NEGLIGIBLE * largest:
             misfit, said = worst.misfit, worst.said

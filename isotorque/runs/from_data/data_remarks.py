@@ -8,6 +8,7 @@ import numpy as np
 
 from isotorque.learning.files.csv_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation
+from isotorque.learning.statistics.constant_torques import OR_FRICTION
 from isotorque.symbolic.robots.load_robot import Robot
 from isotorque.verify.models.measured_torques import Disagreement
 
@@ -63,7 +64,7 @@ def analytic_remarks(
     if CONSTANT * compared.rmse_beside_constants < compared.rmse and compared.poses > 1:
         said += (
             f"; {compared.rmse_beside_constants:.4g} N m RMSE beside gravity and a constant torque "
-            "of each joint, its mean"
+            f"of each joint, its mean{OR_FRICTION}"
         )
     if tried is not None and tried.rmse_of_others > 0:
         times = compared.rmse / tried.rmse_of_others
@@ -94,8 +95,8 @@ def constant_remarks(learner: Any, robot: Robot) -> tuple[str, ...]:
     if not found:
         return ()
     return (
-        f"the model contains constant torques, {', '.join(found)}: it predicts what sensors show, "
-        "and errors beside analytic gravity contain them",
+        f"the model contains constant torques, {', '.join(found)}{OR_FRICTION}; it predicts what "
+        "sensors show, and errors beside analytic gravity contain them",
     )
 
 

@@ -44,6 +44,17 @@ def test_a_constant_torque_leaves_the_relations_that_do_not_flip_it(seed, name, 
         assert excess(entry.relation, name, b, 0.0 * b, seed % 1000) <= 1.0
 
 
+@given(seeds, st.sampled_from(["2r", "3r"]), st.floats(0.05, 0.5), st.integers(20, 300))
+@settings(max_examples=6)
+def test_friction_from_one_side_is_never_called_a_constant_alone(seed, name, size, rows):
+    rng = np.random.default_rng(seed)
+    q, tau = anywhere(name, rng, rows)
+    speed = np.abs(rng.normal(size=q.shape))  # every joint stopped while it moved upwards
+    said = learn_relations(q, tau + size * np.sign(speed)).note
+    assert said.count("a constant torque") == q.shape[1]
+    assert "or friction approached from one side: not to be told apart without approach" in said
+
+
 @given(seeds, st.sampled_from(["2r", "3r"]), st.floats(0.005, 0.03), st.integers(20, 300))
 @settings(max_examples=12)
 def test_a_spring_leaves_nothing_and_is_told(seed, name, share, rows):

@@ -16,6 +16,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
 from isotorque.learning.learners.rigid.structure.expansion import expanded
 from isotorque.learning.learners.rigid.structure.snapping import SnappedChain
+from isotorque.learning.statistics.constant_torques import OR_FRICTION
 from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
@@ -80,8 +81,9 @@ class ChainSymmetries:
             return ""
         sizes = ", ".join(f"{x:.3g}" for x in np.abs(self.corrections).max(axis=0) / 2.0)
         return (
-            f"; joints have constant torques of at most ({sizes}) N m beside gravity: relations "
-            "that change their sign hold of gravity, of the measured torque with corrections"
+            f"; joints have constant torques of at most ({sizes}) N m beside gravity{OR_FRICTION}; "
+            "relations that change their sign hold of gravity, of the measured torque with "
+            "corrections"
         )
 
 

@@ -205,6 +205,8 @@ def test_a_constant_of_a_sensor_is_told_apart_from_gravity(learn, tmp_path, lear
     assert analytic["rmse_beside_constants"] == pytest.approx(NOISE, rel=0.3)
     assert found["data"]["held_out"]["rmse"] == pytest.approx(NOISE, rel=0.3)
     assert any("beside gravity and a constant torque" in remark for remark in found["remarks"])
+    named = [x for x in found["remarks"] if "constant torque" in x]
+    assert all("or friction approached from one side: not to be told apart" in x for x in named)
 
 
 def test_poses_are_counted_not_rows(learn, tmp_path):
