@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from isotorque.cli.options import (
     AngleNoise,
+    Chosen,
     Confirm,
     EncoderStep,
     Engine,
@@ -26,6 +27,7 @@ def discover(
     out: Out,
     n_min: NMin = 2,
     confirm: Confirm = 0,
+    settings: Chosen = None,
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
     settle: Settle = "finished",
@@ -44,10 +46,13 @@ def discover(
     from isotorque.learning.arm import OutcomeKind
     from isotorque.runs.experiment import discover_symmetries
     from isotorque.runs.options.run_options import ArmOptions, RunOptions
+    from isotorque.runs.options.settings import Settings
     from isotorque.symbolic.common.files import output_directory
 
     arm = ArmOptions(seed, physics, engine, settle, angle_noise, torque_noise, encoder_step)
-    options = RunOptions(robot, arm, n_min, confirm=confirm)
+    chosen = Settings.of(settings or ())
+    chosen.require_only("discovery", "scheme")
+    options = RunOptions(robot, arm, n_min, confirm=confirm, settings=chosen)
     load(robot, quiet)
     output_directory(out)
     with progress_bars(quiet) as progress:

@@ -9,6 +9,7 @@ import typer
 
 from isotorque.cli.options import (
     AngleNoise,
+    Chosen,
     EncoderStep,
     Engine,
     Json,
@@ -39,6 +40,10 @@ SIMULATED = (
     "torque_noise",
     "encoder_step",
 )
+
+NEED_ROBOT = ("strategy", "samples", "symmetries", "drop_outliers", "settings")
+WORDS = {"settings": "set"}
+"""Options that have another name on the command line."""
 
 
 @takes_robot()
@@ -95,6 +100,7 @@ def learn(
     ] = None,
     n_min: NMin = 2,
     learn_anyway: LearnAnyway = False,
+    settings: Chosen = None,
     physics: Physics = "open_loop",
     engine: Engine = "compiled",
     settle: Settle = "finished",
@@ -120,6 +126,7 @@ def learn(
     from isotorque.runs.options.learn_options import learn_options
     from isotorque.runs.options.recorded_robot import as_recorded
     from isotorque.runs.options.run_options import LATTICE
+    from isotorque.runs.options.settings import Settings
     from isotorque.symbolic.common.files import output_directory
 
     given = _given(context)
@@ -130,7 +137,8 @@ def learn(
     load(as_recorded(robot, out), quiet)
     if data is not None:
         _refuse(given, ("strategy", "samples", *SIMULATED), "--data")
-        recording = DataOptions(robot, data, learner, symmetries, drop_outliers, seed)
+        chosen = Settings.of(settings or ())
+        recording = DataOptions(robot, data, learner, symmetries, drop_outliers, seed, chosen)
         with progress_bars(quiet) as progress:
             learned = learn_from_data(recording, out, progress)
     else:
@@ -160,7 +168,7 @@ def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quie
         accepted = "the name or file of a robot, or --data FILE.csv"
         raise InputError("command line", "ROBOT", "missing", accepted)
     other = tuple(x for x in SIMULATED if x not in ("torque_noise", "angle_noise"))
-    _refuse(given, ("strategy", "samples", "symmetries", "drop_outliers", *other), "no ROBOT")
+    _refuse(given, (*NEED_ROBOT, *other), "no ROBOT")
     options = ChainDataOptions(
         given["data"],
         given.get("torque_noise"),
@@ -234,7 +242,7 @@ def _refuse(given: dict[str, Any], names: tuple[str, ...], beside: str) -> None:
 
     for name in names:
         if name in given:
-            option = f"--{name.replace('_', '-')} with {beside}"
+            option = f"--{WORDS.get(name, name).replace('_', '-')} with {beside}"
             raise InputError(
                 "command line", option, given[name], "nothing: it has no meaning there"
             )

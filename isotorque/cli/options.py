@@ -80,6 +80,17 @@ Samples = Annotated[
         show_default=False,
     ),
 ]
+Chosen = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A setting of discovery, exploration, scheme or learner: epsilon=0.2,"
+        " exploration.noise=0.05, learner.replay=20; a wrong name lists all. May be given several"
+        " times.",
+        show_default=False,
+    ),
+]
 Strategy = Annotated[
     str,
     typer.Option(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from isotorque.cli.options import (
     AngleNoise,
+    Chosen,
     ChosenPhysics,
     Confirm,
     EncoderStep,
@@ -39,6 +40,7 @@ def run(
     confirm: Confirm = 0,
     learn_anyway: LearnAnyway = False,
     tolerance: ModelTolerance = None,
+    settings: Chosen = None,
     physics: ChosenPhysics = None,
     engine: Engine = "compiled",
     settle: Settle = "finished",
@@ -63,6 +65,7 @@ def run(
     from isotorque.runs.judgement import judge_run
     from isotorque.runs.options.learn_options import run_options
     from isotorque.runs.options.run_options import ArmOptions
+    from isotorque.runs.options.settings import Settings
     from isotorque.runs.perform_run import perform
     from isotorque.runs.recorded_relations import save_relations
     from isotorque.symbolic.common.files import output_directory
@@ -81,6 +84,7 @@ def run(
         confirm=confirm,
         learn_anyway=learn_anyway,
         tolerance=tolerance,
+        settings=Settings.of(settings or ()),
     )
     load(robot, quiet)
     if options.guided_by_need:

@@ -56,7 +56,7 @@ def choose_model(run: RunOutcome) -> None:
         run.model, run.model_name = known.learner, CHAIN
     elif run.options.leader == CHAIN:
         run.model_name = default_learner(run.options.strategy, run.robot.n)
-        task = run.options.task(run.robot.n)
+        task = replace(run.options.task(run.robot.n), parameters={})
         q, torque = scheme.chain.samples
         run.model = learner_by_name(run.model_name, scheme.group, task).fit(q, torque)
     elif run.options.learner == CHAIN and not is_usable(scheme.learner):

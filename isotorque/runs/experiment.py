@@ -98,9 +98,10 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
     """
     result = prepare_run(options)
     made_with, arm, scheme = options.discovering, result.arm, result.scheme
-    chosen = {"n_min": options.n_min}
+    chosen: dict[str, Any] = {"n_min": options.n_min}
     if options.confirm:  # recordings that were made without it stay as they are
         chosen["confirm"] = options.confirm
+    chosen |= options.settings.recorded("discovery", "scheme")
     info = run_info(result.robot, arm, made_with, "discover", chosen)
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
@@ -156,6 +157,8 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     chosen["learner"] = options.leader
     if not result.gate_passed:  # as asked for; where it is passed the option changes nothing
         chosen["learn_anyway"] = True
+    led_by = ("learner",) if options.leader == options.learner else ()
+    chosen |= options.settings.recorded("exploration", "scheme", *led_by)
     info = run_info(result.robot, arm, options.arm, "learn", chosen)
     with (
         Recording.open_or_create(out / DATABASE, info) as recording,
@@ -214,12 +217,15 @@ def _scheme_settings(options: RunOptions, parents: tuple[int, ...] | None) -> Sc
     strategy = DIRECTIONS if options.strategy == LATTICE else options.strategy
     strategy = GUIDED_DIRECTIONS if options.is_guided else strategy
     return SchemeSettings(
+        options.settings.discovery,
+        options.settings.exploration,
         n_min=options.n_min,
         samples=options.samples,
         strategy=strategy,
         confirm=options.confirm,
         guided=options.discovering.physics == PhysicsMode.GUIDED,
         parents=parents,
+        **options.settings.scheme,
     )
 
 
@@ -228,7 +234,7 @@ def _learner_factory(options: RunOptions, joints: int) -> LearnerFactory:
 
     def make(group: SymmetryGroup | None, torque_range: Array) -> Any:
         if options.learner not in BATCH_LEARNERS:
-            return online_learner(options.learner, group)
+            return online_learner(options.learner, group, options.settings.learner)
         task = options.task(joints)
         return CollectedSamples(
             online_learner(options.leader, group),

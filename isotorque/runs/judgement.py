@@ -147,6 +147,7 @@ def _setup(run: RunOutcome) -> RunSetup:
         ("--encoder-step", options.arm.encoder_step),
     ):
         command += [option, str(value)] if value else []
+    command += [word for each in options.settings.words for word in ("--set", each)]
     command += ["--learn-anyway"] if options.learn_anyway else []
     command += [] if options.tolerance is None else ["--tolerance", str(options.tolerance)]
     return RunSetup(

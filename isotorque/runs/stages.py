@@ -78,8 +78,8 @@ def robot_facts(robot: RobotOptions, options: ArmOptions) -> dict[str, Any]:
     return {"made_with": made_with} | ({"robot": part} if part else {})
 
 
-def recorded_discovery(out: Path) -> tuple[ArmOptions, int, int] | None:
-    """Return arm, n_min and confirm of the discovery that ``out`` already holds, if any."""
+def recorded_discovery(out: Path) -> tuple[ArmOptions, int, int, dict[str, Any]] | None:
+    """Return arm, n_min, confirm, settings of the discovery that ``out`` already holds, if any."""
     path = out / DATABASE
     if not path.is_file():
         return None
@@ -89,5 +89,6 @@ def recorded_discovery(out: Path) -> tuple[ArmOptions, int, int] | None:
                 recorded = part.info.options
                 names = {f.name for f in fields(ArmOptions)}
                 arm = ArmOptions(**{k: v for k, v in recorded["made_with"].items() if k in names})
-                return arm, int(recorded["n_min"]), int(recorded.get("confirm", 0))
+                confirm = int(recorded.get("confirm", 0))
+                return arm, int(recorded["n_min"]), confirm, recorded.get("settings", {})
     return None

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from isotorque.symbolic.common.errors import InputError
@@ -33,6 +33,8 @@ class LearningTask:
         Seed of random starts.
     turning : tuple of bool or None
         Joints whose angles count modulo a full turn; None: all.
+    parameters : mapping
+        Parameters of the learner that replace its usual ones, by name.
     """
 
     joints: int = 0
@@ -41,6 +43,7 @@ class LearningTask:
     robot: RobotOptions | str | None = None
     seed: int = 0
     turning: tuple[bool, ...] | None = None
+    parameters: Mapping[str, Any] = field(default_factory=dict)
 
 
 Factory = Callable[[SymmetryGroup | None, LearningTask], Any]
@@ -257,11 +260,24 @@ def learner_by_name(name: str, group: SymmetryGroup | None, task: LearningTask) 
     >>> learner_by_name("network", None, LearningTask(joints=3, samples=300)).hidden
     30
     """
-    return LEARNERS[check_learner(name)](group, task)
+    learner = LEARNERS[check_learner(name)](group, task)
+    if task.parameters:
+        learner.set_params(**task.parameters)
+        learner._check_parameters()
+    return learner
 
 
-def online_learner(name: str, group: SymmetryGroup | None) -> Any:
+def online_learner(
+    name: str, group: SymmetryGroup | None, parameters: Mapping[str, Any] | None = None
+) -> Any:
     """Return a fresh learner that takes samples one by one.
+
+    Parameters
+    ----------
+    name, group
+        As of `learner_by_name`.
+    parameters
+        Parameters that replace the usual ones, by name.
 
     Raises
     ------
@@ -275,4 +291,4 @@ def online_learner(name: str, group: SymmetryGroup | None) -> Any:
     """
     if name not in ONLINE_LEARNERS:
         raise InputError("learner", "name", name, ", ".join(sorted(ONLINE_LEARNERS)))
-    return learner_by_name(name, group, LearningTask())
+    return learner_by_name(name, group, LearningTask(parameters=parameters or {}))

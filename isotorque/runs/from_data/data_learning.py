@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from isotorque.learning.files.csv_samples import StaticSamples, read_csv
 from isotorque.learning.files.run_info import RunInfo
 from isotorque.learning.learners.cross_validation import CrossValidation
-from isotorque.learning.learners.registry import LearningTask, check_learner
+from isotorque.learning.learners.registry import LearningTask
 from isotorque.learning.recordings.recorded_data import record_samples
 from isotorque.learning.recordings.recording import Recording
 from isotorque.learning.relations.testing.supported_group import SupportedGroup
@@ -29,8 +29,10 @@ from isotorque.runs.learned_model import LearnedModel
 from isotorque.runs.learning_curve import DenseTest
 from isotorque.runs.options.recorded_robot import as_recorded, keep_robot_file
 from isotorque.runs.options.run_options import check_symmetries
+from isotorque.runs.options.settings import Settings, check_learner_settings
 from isotorque.runs.stages import DATABASE
 from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.files import output_directory
 from isotorque.symbolic.common.robot_options import RobotOptions
 from isotorque.symbolic.common.single_thread import single_thread
@@ -65,6 +67,8 @@ class DataOptions:
         Whether the model leaves out rows that do not fit the others.
     seed : int
         Seed of all random choices.
+    settings : Settings
+        Parameters of the learner that is named.
     """
 
     robot: RobotOptions
@@ -73,19 +77,27 @@ class DataOptions:
     symmetries: str = "learned"
     drop_outliers: bool = False
     seed: int = 0
+    settings: Settings = field(default_factory=Settings)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", RobotOptions.of(self.robot))
         check_symmetries(self.symmetries)
+        self.settings.require_only("learner")
         if self.learner is not None:
-            check_learner(self.learner)
+            chosen = self.settings.learner
+            check_learner_settings(self.learner, chosen, LearningTask(robot=self.robot))
+        elif self.settings.values:
+            accepted = "a --learner beside it"
+            raise InputError("command line", "--set", self.settings.words[0], accepted)
 
     def task(self, samples: StaticSamples, robot: Robot) -> LearningTask:
         """Return what learners are told beforehand."""
         rows, joints = samples.q.shape
         width = robot.limits[:, 1] - robot.limits[:, 0]
         turning = tuple((np.abs(width - 2.0 * np.pi) < 1e-9).tolist())  # no limits in the file
-        return LearningTask(joints, rows, True, self.robot, self.seed, turning)
+        return LearningTask(
+            joints, rows, True, self.robot, self.seed, turning, self.settings.learner
+        )
 
 
 @single_thread()

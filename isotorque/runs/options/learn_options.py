@@ -18,6 +18,7 @@ from isotorque.runs.options.run_options import (
     default_learner,
     default_samples,
 )
+from isotorque.runs.options.settings import Settings
 from isotorque.runs.stages import cannot_hold_itself, recorded_discovery
 from isotorque.symbolic.common.robot_options import RobotOptions
 from isotorque.symbolic.robots.load_robot import load_robot
@@ -44,8 +45,8 @@ def learn_options(
     learner, samples
         None: the default of the strategy.
     given
-        Options of the arm (`ArmOptions`), ``n_min``, ``confirm`` and ``learn_anyway``, as far as
-        the user gave them.
+        Options of the arm (`ArmOptions`), ``n_min``, ``confirm``, ``learn_anyway`` and
+        ``settings`` (`Settings.of`), as far as the user gave them.
 
     Raises
     ------
@@ -62,14 +63,16 @@ def learn_options(
     if strategy == LATTICE and "physics" not in asked:
         asked["physics"] = PhysicsMode.GUIDED.value
     recorded = None if out is None else recorded_discovery(out)
+    settings = Settings.of(given.get("settings") or ())
     guided = False
     if recorded is None:
         arm, n_min, confirm = ArmOptions(**asked), 2, 0
         guided = strategy == LATTICE and cannot_hold_itself(loaded, arm)
         discovery = _discovering(arm, strategy, guided)
     else:
-        discovery, n_min, confirm = recorded
+        discovery, n_min, confirm, before = recorded
         arm = replace(discovery, **asked)
+        settings = settings.joined(before)
     n_min, confirm = given.get("n_min", n_min), given.get("confirm", confirm)
     anyway = bool(given.get("learn_anyway", False))
     return RunOptions(
@@ -84,6 +87,7 @@ def learn_options(
         confirm,
         anyway,
         guided_by_need=guided,
+        settings=settings,
     )
 
 

@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass, field
 
 from isotorque.learning.exploration.registry import DIRECTIONS, EXPLORATIONS
-from isotorque.learning.learners.registry import BATCH_LEARNERS, LEADER, LearningTask, check_learner
+from isotorque.learning.learners.registry import BATCH_LEARNERS, LEADER, LearningTask
 from isotorque.learning.simulator.settings import PhysicsMode, SettleMode
+from isotorque.runs.options.settings import Settings, check_learner_settings
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.robot_options import RobotOptions
 
@@ -120,6 +121,8 @@ class RunOptions:
         paper's arms, what takes its place where none is.
     chain_samples : int
         Samples of the exploration that such a chain leads.
+    settings : Settings
+        Settings of discovery, exploration, scheme and learner that differ from the usual ones.
     """
 
     robot: RobotOptions
@@ -136,6 +139,7 @@ class RunOptions:
     guided_by_need: bool = False
     chain: bool = False
     chain_samples: int = CHAIN_SAMPLES
+    settings: Settings = field(default_factory=Settings)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", RobotOptions.of(self.robot))
@@ -150,10 +154,14 @@ class RunOptions:
             raise InputError("run", "--tolerance", self.tolerance, "a number >= 0 [N m]")
         if self.strategy not in STRATEGIES:
             raise InputError("run", "--strategy", self.strategy, ", ".join(STRATEGIES))
-        check_learner(self.learner)
         if self.strategy == LATTICE and self.arm.physics != PhysicsMode.GUIDED:
             accepted = "guided (a lattice visits what an arm cannot hold by itself)"
             raise InputError("run", "--physics with --strategy lattice", self.arm.physics, accepted)
+        chosen = self.settings.learner
+        if chosen and self.learner == CHAIN:
+            accepted = "nothing: a run decides how it looks for a rigid chain"
+            raise InputError("command line", "--set", f"learner.{next(iter(chosen))}", accepted)
+        check_learner_settings(self.learner, chosen, LearningTask(robot=self.robot))
 
     @property
     def discovering(self) -> ArmOptions:
@@ -180,6 +188,7 @@ class RunOptions:
             not self.arm.is_exact,
             self.robot,
             self.arm.seed,
+            parameters=self.settings.learner,
         )
 
 
