@@ -156,7 +156,8 @@ def run_arm(name: str, robot: str, folder: Path) -> Row:
         done, more = _attempt(robot, advised, folder / name)
         seconds += more
     report = json.loads(done.stdout) if done.returncode in (0, 1) and done.stdout else None
-    return Row(name, advised, done.returncode, seconds, report, done.stderr.strip()[-300:])
+    said = done.stderr.replace(robot, name).strip()[-300:]
+    return Row(name, advised, done.returncode, seconds, report, said)
 
 
 def _attempt(robot: str, options: Sequence[str], out: Path) -> tuple[Any, float]:

@@ -142,6 +142,9 @@ def learn_model(result: RunOutcome, out: Path, progress: Progress) -> None:
     """
     let_chain_lead(result)
     options, scheme = result.options, result.scheme
+    if not np.any(result.gravity.potential.frequencies):
+        accepted = "an arm that gravity moves; --gravity X,Y,Z says how it is mounted"
+        raise InputError(result.robot.name, "torque of gravity", "0 at every joint", accepted)
     if not scheme.torque_range.any():
         what = f"number of torques held by itself, in {len(result.motions)} motions,"
         accepted = "some; guided physics leads an arm that holds none"

@@ -1,6 +1,6 @@
 """Optimal design against a lattice: torque error of noisy samples, chosen or evenly spread.
 
-Usage: python -m benchmarks.batch_design [--write] [--seeds 30] [ROBOT ...]
+Usage: python -m benchmarks.batch.design [--write] [--seeds 30] [ROBOT ...]
 
 Angles are off by 0.5 degrees, torques by 0.02 N m. A quarter of the samples (at least four) are a
 lattice in the BCTS; they give the first fit, from which the rest is chosen among 200 configurations
@@ -36,7 +36,7 @@ from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
-PAGE = Path(__file__).parents[1] / "docs" / "batch.md"
+PAGE = Path(__file__).parents[2] / "docs" / "batch.md"
 NOISE = MeasurementNoise(float(np.deg2rad(0.5)), 0.02)
 SAMPLES = (8, 16, 32, 64)
 CANDIDATES, DENSE, FIRST = 200, 800, 4

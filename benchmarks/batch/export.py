@@ -1,6 +1,6 @@
 """Exported gravity as compiled C beside Pinocchio called from Python, interleaved.
 
-Usage: python -m benchmarks.batch_export [--write]
+Usage: python -m benchmarks.batch.export [--write]
 
 ``C, loop``: called over and over from C. ``C, ctypes``: called from Python through ctypes.
 ``Pinocchio``: ``computeGeneralizedGravity`` called from Python. Each the least of 15 rounds in
@@ -35,7 +35,7 @@ from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
-PAGE = Path(__file__).parents[1] / "docs" / "export.md"
+PAGE = Path(__file__).parents[2] / "docs" / "export.md"
 ROUNDS, CALLS = 15, 2000
 CALLER = """
 void isotorque_gravity(const double *q, double *tau);
