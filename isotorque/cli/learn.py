@@ -199,17 +199,39 @@ def _print_chain(document: dict[str, Any]) -> None:
         print(f"missing: {document['missing']}")
         if document["explained_if"]:
             print(f"a rigid chain explains all of them if {document['explained_if']}")
+        _print_constant_torques(document)
+        _print_next_poses(document)
         return
     print(f"a {_chain(document)} {document['verdict']}")
     error = document["standard_error"]
     print(f"torque known to {error['rms']:.2g} N m within the ranges of the recording", end=" ")
     print(f"(standard error, RMS; at most {error['largest']:.2g})")
+    _print_constant_torques(document)
     if "relations" in document:
         print(f"{document['relations']} symmetry relations, {document['statement']}")
     for group in document.get("gains", []):
         _print_gains(group)
     for name, share in zip(document["joints"], document.get("process_share", []), strict=False):
         print(f"{name}: {100 * share:.1f} % of the torque (RMS) is beside the rigid chain")
+
+
+def _print_constant_torques(document: dict[str, Any]) -> None:
+    for name, torque in document.get("constant_torques", {}).items():
+        why = "gravity does not reach it, or it is not measured"
+        if torque:
+            why = "a sensor that does not read, or a constant offset where gravity does not reach"
+        print(f"{name}: torque {torque:g} N m in every pose ({why})")
+
+
+def _print_next_poses(document: dict[str, Any]) -> None:
+    if "next_poses" not in document:
+        return
+    known, of = document["numbers_known"], document["numbers_of_a_chain"]
+    print(f"known already: {min(known, of)} of the {of} numbers of a chain", end="; ")
+    print("poses to take next, if the arm can:")
+    print(",".join(f"{name}.q" for name in document["joints"]))
+    for pose in document["next_poses"]:
+        print(",".join(f"{x:.4f}" for x in pose))
 
 
 def _print_gains(group: dict[str, Any]) -> None:

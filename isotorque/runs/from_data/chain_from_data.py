@@ -21,6 +21,7 @@ from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidC
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import ChainSymmetries
 from isotorque.learning.statistics.poses import group_poses
+from isotorque.runs.from_data.poses_to_take import poses_to_take
 from isotorque.runs.stages import DATABASE
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.files import output_directory, write_whole
@@ -137,7 +138,17 @@ class ChainFromData:
             "explained_if": self.other_reading,
             "model": None if model is None else str(model),
         }
+        still = self.constant_torques
+        if still:
+            found["constant_torques"] = {n: float(self.samples.tau[0, j]) for j, n in still}
         if isinstance(learner, RigidChain):
+            next_poses = poses_to_take(learner.fit_, self.options.seed)
+            if next_poses is not None:
+                found |= {
+                    "next_poses": next_poses.poses.tolist(),
+                    "numbers_known": next_poses.known,
+                    "numbers_of_a_chain": next_poses.numbers,
+                }
             p_value = learner.fit_.p_value
             found |= {
                 "starts": learner.fit_.starts,
@@ -164,6 +175,14 @@ class ChainFromData:
                 gains = learner.chain_.gains
                 found["gains"] = [self._gains(group, gains) for group in learner.gain_groups_]
         return found
+
+    @property
+    def constant_torques(self) -> list[tuple[int, str]]:
+        """Joints whose torque is the same in all poses, though these differ: number and name."""
+        if len(np.unique(self.samples.q, axis=0)) < 2:
+            return []
+        still = np.ptp(self.samples.tau, axis=0) == 0.0
+        return [(j, name) for j, name in enumerate(self.joint_names) if still[j]]
 
     def _gains(self, group: GainGroup, gains: Array) -> dict[str, Any]:
         """Return gains that are known relative to each other."""
@@ -273,6 +292,7 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
     """
     names = joint_names_of(options.file)
     samples = read_csv(options.file, names)
+    _refuse_constant_torques(options.file, samples)
     poses = group_poses(samples.q)
     q, tau = samples.q, samples.tau
     if poses.repeated:
@@ -305,3 +325,11 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
     if learner.verdict_ is FitStatus.MISFIT:
         reading = other_reading(plain, q, tau, names)
     return ChainFromData(options, names, samples, learner, None, reading)
+
+
+def _refuse_constant_torques(file: Path, samples: StaticSamples) -> None:
+    """Refuse torques that are the same whatever the pose, unless they are zero (no gravity)."""
+    moved = len(np.unique(samples.q, axis=0)) > 1
+    if moved and not np.ptp(samples.tau, axis=0).any() and samples.tau.any():
+        found = f"the same in all {len(samples.q)} rows, though angles differ"
+        raise InputError(str(file), "torques", found, "torques measured in each of the poses")

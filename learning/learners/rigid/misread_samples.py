@@ -37,9 +37,9 @@ def other_reading(learner: RigidChain, q: Array, torque: Array, names: Sequence[
     Notes
     -----
     Tried are angles in degrees (where some exceed a turn), two torque columns swapped, two angle
-    columns swapped, and the sign of one joint's torque. Samples of a rigid arm have few more
-    equations than the chain has numbers only if there are few poses, so a reading that fits is
-    hardly ever an accident; it is told, not applied.
+    columns swapped, the sign of one joint's torque, and torques taken for angles. Samples of a
+    rigid arm have few more equations than the chain has numbers only if there are few poses, so a
+    reading that fits is hardly ever an accident; it is told, not applied.
 
     Examples
     --------
@@ -64,6 +64,7 @@ def _readings(q: Array, torque: Array, names: Sequence[str]) -> Iterator[tuple[A
     n = q.shape[1]
     if np.abs(q).max(initial=0.0) > 2.0 * np.pi:
         yield np.deg2rad(q), torque, "the angles are in degrees"
+    yield torque, q, "the columns of angles and torques are exchanged"
     for j in range(n):
         signs = np.ones(n)
         signs[j] = -1.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -141,7 +142,7 @@ def _exact(fit: StartSearch, found: SearchedChain) -> ChainFit:
         if weightless and fit.samples.poses >= poses_needed(fit.model):
             return result
         fit.found = [found]
-        return fit.refused(FitStatus.TOO_FEW, _too_few(fit))
+        return fit.refused(FitStatus.TOO_FEW, **_too_few(fit))
     return result
 
 
@@ -151,7 +152,7 @@ def _within_noise(fit: StartSearch) -> ChainFit:
     firm = fit.samples.equations - most_parameters(model)
     if firm < model.n or samples.poses < poses_needed(model) + 1:
         fit.try_random()
-        return fit.refused(FitStatus.TOO_FEW, _too_few(fit, poses_needed(model) + 1))
+        return fit.refused(FitStatus.TOO_FEW, **_too_few(fit, poses_needed(model) + 1))
     # few equations to spare say little: more starts, to see whether there are rivals
     fewest = FEWEST_STARTS if firm >= 2 * model.n else UNKNOWN_NOISE_STARTS
     warm = bool(fit.found)
@@ -181,7 +182,7 @@ def _within_noise(fit: StartSearch) -> ChainFit:
         return fit.result(FitStatus.AMBIGUOUS, best, remark=remark, p_value=likely)
     result = fit.result(FitStatus.CHI_SQUARE, best, p_value=likely)
     if not _known_elsewhere(result):
-        return fit.result(FitStatus.TOO_FEW, best, remark=_too_few(fit), p_value=likely)
+        return fit.result(FitStatus.TOO_FEW, best, p_value=likely, **_too_few(fit))
     return result
 
 
@@ -219,7 +220,7 @@ def _by_held_out(fit: StartSearch) -> ChainFit:
     # what is left when a fold is left out must still determine the chain
     if exact.poses - -(-exact.poses // FOLDS) <= poses_needed(model):
         exhaustive = _to_rounding(fit, fit.most)
-        return exhaustive or fit.refused(FitStatus.TOO_FEW, _too_few_to_hold_out(fit))
+        return exhaustive or fit.refused(FitStatus.TOO_FEW, **_too_few_to_hold_out(fit))
     size = float(np.sqrt(np.mean(exact.torque**2)))
     spare = exact.equations - most_parameters(model)
     accepted = HELD_OUT_SHARE * min(1.0, spare / (4 * model.n)) * size
@@ -239,9 +240,7 @@ def _by_held_out(fit: StartSearch) -> ChainFit:
                 if _known_elsewhere(result):
                     return result
                 fit.samples = noisy
-                left_open = fit.result(
-                    FitStatus.TOO_FEW, found, remark=_too_few(fit), held_out=error
-                )
+                left_open = fit.result(FitStatus.TOO_FEW, found, held_out=error, **_too_few(fit))
                 fit.samples = exact  # go on: another start may explain the samples exactly
             judged = result
         if fit.exhausted:
@@ -263,28 +262,32 @@ def _by_held_out(fit: StartSearch) -> ChainFit:
     return fit.result(FitStatus.MISFIT, found, remark=remark, held_out=judged.held_out)
 
 
-def _too_few(fit: StartSearch, needed: int = 0) -> str:
-    """Say how many poses are missing."""
+def _too_few(fit: StartSearch, needed: int = 0) -> dict[str, Any]:
+    """Say how many poses are missing (0: what counts is how they differ)."""
     poses, needed = fit.samples.poses, max(needed, poses_needed(fit.model))
     if poses < needed:
-        return (
+        remark = (
             f"{needed - poses} more poses: {poses} different ones were given, {needed} are needed"
         )
-    return (
+        return {"remark": remark, "missing": needed - poses}
+    remark = (
         f"poses that differ more: the {poses} given leave the torque elsewhere open "
         "(take some in which every joint moves)"
     )
+    return {"remark": remark, "missing": 0}
 
 
-def _too_few_to_hold_out(fit: StartSearch) -> str:
+def _too_few_to_hold_out(fit: StartSearch) -> dict[str, Any]:
     needed = poses_needed(fit.model) + 2
     while needed - -(-needed // FOLDS) <= poses_needed(fit.model):
         needed += 1
     poses = fit.samples.poses
-    return (
-        f"{max(needed - poses, 1)} more poses: {poses} different ones were given, which are not "
+    missing = max(needed - poses, 1)
+    remark = (
+        f"{missing} more poses: {poses} different ones were given, which are not "
         f"explained exactly; {needed} are needed to estimate the noise (fewer where it is stated)"
     )
+    return {"remark": remark, "missing": missing}
 
 
 def _misfit(fit: StartSearch) -> str:

@@ -46,6 +46,8 @@ class ChainFit:
         Of the misfit where noise was stated, NaN otherwise.
     held_out : float
         RMS torque error at poses left out [N m] where noise was estimated, NaN otherwise.
+    missing : int
+        Poses that are missing at least, where that can be counted.
     """
 
     verdict: FitStatus
@@ -60,6 +62,7 @@ class ChainFit:
     remark: str = ""
     p_value: float = float("nan")
     held_out: float = float("nan")
+    missing: int = 0
 
     @property
     def degrees(self) -> int:

@@ -8,6 +8,7 @@ import pytest
 
 from isotorque.cli.main import status
 from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.export.compiled_source import build, call, needs_cc
 
@@ -76,9 +77,10 @@ def test_too_few_poses_say_how_many_are_missing_and_leave_nothing(tmp_path, caps
     ("change", "reading"),
     [
         (lambda q, tau: (np.rad2deg(q), tau), "the angles are in degrees"),
+        (lambda q, tau: (tau, q), "the columns of angles and torques are exchanged"),
         (lambda q, tau: (q, tau + 3.0 * q), None),
     ],
-    ids=["degrees", "spring"],
+    ids=["degrees", "exchanged", "spring"],
 )
 def test_what_is_no_rigid_chain_is_not_a_model(change, reading, tmp_path, capsys):
     """What it would be if it were read otherwise is said; a spring is no reading."""
@@ -134,6 +136,72 @@ def test_bad_input_is_one_line(options, words, tmp_path, monkeypatch, capsys):
     assert words in error
     assert len(error.splitlines()) == 1
     assert not (tmp_path / "x").exists()
+
+
+@pytest.mark.parametrize(("poses", "noise"), [(3, 0.0), (5, 0.0), (4, 0.02)])
+def test_the_poses_that_are_proposed_are_the_ones_that_were_missing(poses, noise, tmp_path, capsys):
+    """Five in a plane of two joints; three and four anywhere."""
+    data = tmp_path / "poses.csv"
+    model = recording(data, poses, noise=noise)
+    q, tau = np.split(np.loadtxt(data, delimiter=",", skiprows=1), 2, axis=1)
+    gravity = GravityModel(load_robot("panda"))
+    if poses == 5:
+        q[:, 2:] = q[0, 2:]
+        tau = gravity.torque(q)
+        write_csv(data, StaticSamples(q, tau), JOINTS)
+    options = ("--data", data, "--out", tmp_path / "out", "--json")
+    options += ("--torque-noise", noise) if noise else ()
+    for _ in range(3):
+        code = isotorque("learn", *options)
+        found = json.loads(capsys.readouterr().out)
+        if code == 0:
+            break
+        assert 0 < found["numbers_known"] <= found["numbers_of_a_chain"] == 27
+        more = np.array(found["next_poses"])
+        assert more.shape[1] == model.nq
+        widest = np.maximum(np.ptp(q, axis=0), 1.0)
+        assert np.all(np.abs(more - 0.5 * (q.min(axis=0) + q.max(axis=0))) <= widest / 2 + 1e-9)
+        q = np.vstack([q, more])
+        tau = np.vstack(
+            [tau, gravity.torque(more) + noise * np.random.default_rng(1).normal(size=more.shape)]
+        )
+        write_csv(data, StaticSamples(q, tau), JOINTS)
+    assert code == 0, found
+
+
+def test_poses_to_take_are_printed(tmp_path, capsys):
+    data = tmp_path / "poses.csv"
+    recording(data, 3)
+    assert isotorque("learn", "--data", data, "--out", tmp_path / "out") == 1
+    said = capsys.readouterr().out.splitlines()
+    assert "known already: 21 of the 27 numbers" in said[-3]
+    assert said[-2] == ",".join(f"{j}.q" for j in JOINTS)
+    assert len(said[-1].split(",")) == 7
+
+
+@pytest.mark.parametrize(
+    ("torque", "words"), [(0.0, "gravity does not reach"), (5.0, "sensor that does not read")]
+)
+def test_a_torque_that_never_changes_is_named(torque, words, tmp_path, capsys):
+    def stuck(q, tau):
+        tau[:, 3] = torque
+        return q, tau
+
+    data, out = tmp_path / "poses.csv", tmp_path / "out"
+    recording(data, 10, change=stuck)
+    assert isotorque("learn", "--data", data, "--out", out) == 1
+    said = capsys.readouterr().out
+    assert f"elbow: torque {torque:g} N m in every pose" in said
+    assert words in said
+    assert not out.exists()
+
+
+def test_torques_that_are_the_same_in_all_poses_are_no_recording(tmp_path, capsys):
+    data, out = tmp_path / "poses.csv", tmp_path / "out"
+    recording(data, 10, change=lambda q, tau: (q, np.tile(tau[:1], (10, 1))))
+    assert isotorque("learn", "--data", data, "--out", out) == 2
+    assert "the same in all 10 rows, though angles differ" in capsys.readouterr().err
+    assert not out.exists()
 
 
 @pytest.mark.parametrize(("poses", "code"), [(6, 0), (3, 2)])
