@@ -185,9 +185,14 @@ def table(rows: Sequence[Row]) -> str:
     lines = [HEADS, ("---",) * len(HEADS), *(row.cells() for row in rows)]
     held = sum(row.holds for row in rows)
     slowest = max(row.seconds for row in rows)
+    poses = [row.report["totals"]["chain_poses"] for row in rows if row.report is not None]
+    known = [count for count in poses if count is not None]
+    passed = sum(row.status == 0 for row in rows)
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines) + (
         f"\n\n{held} of {len(rows)} runs ended with a report within"
         f" {DEMANDED_SECONDS:g} s of processor time, the slowest after {slowest:.0f} s."
+        f" {passed} passed: the model is right to 1 % of each joint's largest torque. A rigid chain"
+        f" knew the whole map in {len(known)} of them, after at most {max(known, default=0)} poses."
     )
 
 

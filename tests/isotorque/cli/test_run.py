@@ -8,6 +8,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
+from benchmarks.shared.small_arms import SmallArm, SmallJoint, arm_text
 from isotorque.cli.main import status
 from isotorque.learning.files.csv_samples import StaticSamples, write_csv
 from isotorque.runs.experiment import run_experiment
@@ -192,3 +193,15 @@ def test_more_symmetries_than_can_be_listed_are_refused_at_once(
     assert advised == ",".join(names[:6])
     assert status(["symmetries", "hand.urdf", "--joints", advised, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["order"] == 4096
+
+
+def test_an_arm_that_gravity_does_not_move_is_told_what_would(tmp_path, capsys):
+    joints = tuple(SmallJoint("z", (0.3, 0, 0), (-2, 2), 10, 1.0, (0.2, 0, 0)) for _ in range(2))
+    path = tmp_path / "flat.urdf"
+    path.write_text(arm_text("flat", SmallArm("turns in a horizontal plane", joints)))
+    command = ["run", str(path), "--samples", "20", "--quiet"]
+    assert status([*command, "--out", str(tmp_path / "a")]) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert "torque of gravity is 0 at every joint" in said
+    assert "--gravity" in said
+    assert status([*command, "--gravity", "9.81,0,0", "--out", str(tmp_path / "b")]) == 0
