@@ -28,8 +28,8 @@ from isotorque.learning.exploration.registry import (
 )
 from isotorque.learning.exploration.settings import ExplorationSettings
 from isotorque.learning.learners.rigid.chain_watch import ChainWatch
-from isotorque.learning.relations.chain_identification import FEW_JOINTS, relations_of_chain
-from isotorque.learning.relations.chain_identification import METHOD as BY_CHAIN
+from isotorque.learning.relations.identification.chain_identification import relations_of_chain
+from isotorque.learning.relations.identification.identify import SECOND_OPINION
 from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
 from isotorque.learning.relations.next_sample import next_torque
@@ -363,7 +363,7 @@ class Scheme:
         recent = [g.order for g in self.gates[-self.settings.confirmations :]]
         confirmed = len(recent) >= self.settings.confirmations and all(o == order for o in recent)
         passed = decided and self._enough(order) and confirmed
-        sure = self.learned.method == BY_CHAIN and self._many_joints
+        sure = self.learned.chain is not None and self._many_joints
         if self.settings.confirmations == 0 or sure:
             passed = decided and self._enough(order)
         asked = len(self.targets) or len(self.gates) + 1
@@ -382,21 +382,18 @@ class Scheme:
     def relations(self, q: Array, torque: Array) -> LearnedSymmetries:
         """Learn the relations from static samples (m, n) [rad], (m, n) [N m].
 
-        A chain that later samples have confirmed tells them where joints are many: waves are then
-        too many to be fitted. With few joints it does so where the samples themselves show less.
+        Where joints are many, a chain that later samples have confirmed tells them.
         """
-        known = self.chain.knowledge().learner if self.chain.confirmed is not None else None
-        by_chain = None if known is None else relations_of_chain(known, *self.chain.samples)
-        if by_chain is not None and self._many_joints:
-            return by_chain
-        learned = learn_relations(q, torque)
-        if by_chain is None or (learned.lack is not None and learned.lack.failed):
-            return learned
-        return learned if learned.decided and learned.order >= by_chain.order else by_chain
+        if self._many_joints and self.chain.confirmed is not None:
+            known = self.chain.knowledge().learner
+            by_chain = None if known is None else relations_of_chain(known)
+            if by_chain is not None and by_chain.decided:
+                return by_chain
+        return learn_relations(q, torque, parents=self.settings.parents)
 
     @property
     def _many_joints(self) -> bool:
-        return len(self.home) > FEW_JOINTS
+        return len(self.home) > SECOND_OPINION
 
     def learn(self) -> Iterator[ExplorationStep]:
         """Explore within the BCTS and learn online.

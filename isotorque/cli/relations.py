@@ -68,7 +68,6 @@ def relations(
     import json as text
 
     from isotorque.learning.recordings.recording_reader import RecordingReader
-    from isotorque.learning.relations.chain_identification import with_chain
     from isotorque.learning.relations.learn_relations import learn_relations
     from isotorque.learning.relations.testing.judge_candidates import judge_candidates
     from isotorque.runs.experiment import DATABASE
@@ -92,7 +91,6 @@ def relations(
         limits = recorded_limits(reader)
     judged = judge_candidates(claims, samples.q, samples.tau, noise=noise)
     learned = learn_relations(samples.q, samples.tau, noise=noise)
-    learned = with_chain(learned, samples.q, samples.tau, noise=noise)
     document = relations_found(learned, samples, joints, limits)
     document["robot_options"] = recorded_options(run)
     write_whole(run / "relations.json", text.dumps(plain(document), indent=1) + "\n")

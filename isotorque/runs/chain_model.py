@@ -6,9 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from isotorque.learning.learners.registry import learner_by_name
-from isotorque.learning.relations.chain_identification import FEW_JOINTS
 from isotorque.runs.learning_curve import CurvePoint, DenseTest
-from isotorque.runs.options.run_options import CHAIN, RunOptions, default_learner
+from isotorque.runs.options.run_options import CHAIN, FEW_JOINTS, RunOptions, default_learner
 from isotorque.runs.run_outcome import RunOutcome
 
 

@@ -1,16 +1,30 @@
-"""Symmetry relations learned from static samples: pairing and identification, each checked."""
+"""Symmetry relations learned from static samples: identified, and checked by pairs."""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.examined_fit import ExaminedFit
+from isotorque.learning.relations.identification.chain_identification import METHOD as BY_CHAIN
 from isotorque.learning.relations.identification.group_fit import fit_group
-from isotorque.learning.relations.identification.identify import SIGNIFICANCE, claim, identify
-from isotorque.learning.relations.learned_symmetries import Knowledge, LearnedSymmetries
+from isotorque.learning.relations.identification.identify import (
+    candidates_of,
+    identify,
+    in_basis,
+    is_among,
+)
+from isotorque.learning.relations.identification.wave_identification import METHOD as BY_WAVES
+from isotorque.learning.relations.identification.wave_identification import SIGNIFICANCE, claim
+from isotorque.learning.relations.learned_symmetries import (
+    Knowledge,
+    LearnedRelation,
+    LearnedSymmetries,
+)
 from isotorque.learning.relations.pairing.orbit_refinement import Refinement
 from isotorque.learning.relations.pairing.pair_evidence import PairEvidence
 from isotorque.learning.relations.pairing.pair_relations import (
@@ -23,8 +37,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
     Undetermined,
 )
 from isotorque.learning.relations.static_samples import static_samples
-from isotorque.symbolic.common.angles import wrap
-from isotorque.symbolic.groups.group_arrays import SAME_ESTIMATED_OFFSET, CandidateGroup, completed
+from isotorque.symbolic.groups.group_arrays import CandidateGroup, completed
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]
@@ -33,7 +46,10 @@ LEAST_ANGLE_NOISE = 1e-8
 """Settled angles are not trusted beyond this [rad] when pairs are compared."""
 FREEDOM = 8.0
 """Degrees of freedom from which an estimated noise level is good enough for pairing."""
-METHOD = "pairing and identification"
+CONTRADICTED = 5.0
+"""A relation is false if torques that a chain predicts for it differ by so many standard errors"""
+NEGLIGIBLE = 1e-6
+"""and by this share of the largest."""
 
 
 def learn_relations(
@@ -43,8 +59,9 @@ def learn_relations(
     noise: MeasurementNoise | None = None,
     largest_entry: int = 2,
     snap: bool = True,
+    parents: Sequence[int] | None = None,
 ) -> LearnedSymmetries:
-    """Learn the symmetry group of the torque map from static samples, by both methods.
+    """Learn the symmetry group of the torque map from static samples, by all methods.
 
     Parameters
     ----------
@@ -76,11 +93,12 @@ def learn_relations(
 
     Notes
     -----
-    Identification (`identify`) needs no configurations with equal torque and finds relations that
-    no pair can show: an arm that cannot hold itself upright never records an upright partner.
+    Identification (`identify`: a rigid chain first, waves where joints are few or no chain is
+    accepted) needs no configurations with equal torque and finds relations that no pair can show:
+    an arm that cannot hold itself upright never records an upright partner.
     Pairing (`pair_relations`) needs no model of the torque. Where both speak, a paired relation
-    that the fitted potential contradicts is dropped, and the offsets come from the potential,
-    which uses all samples. Where the samples do not determine a potential, what pairing found
+    that the chain or the fitted potential contradicts is dropped, and the offsets come from those,
+    which use all samples. Where the samples determine neither, what pairing found
     stands alone, without a bound on the torque error.
 
     Examples
@@ -95,11 +113,11 @@ def learn_relations(
     6
     """
     configurations, torques = static_samples(q, tau)
-    identified = identify(configurations, torques, noise=noise, snap=snap)
+    identified = identify(configurations, torques, noise=noise, snap=snap, parents=parents)
     lack = identified.lack
     if lack is not None and lack.failed:
         # pairs would show near misses of relations that the measured torque does not have
-        return dataclasses.replace(identified, method=METHOD)
+        return identified
     try:
         pairs = search_pairs(
             configurations, torques, _noise_of_pairs(noise, identified), largest_entry
@@ -108,11 +126,30 @@ def learn_relations(
         if identified.order > 1 or identified.decided:
             return identified
         missing = _both(identified.missing, str(lacking))
-        return dataclasses.replace(identified, missing=missing, method=METHOD)
+        return dataclasses.replace(identified, missing=missing)
     paired = learned_from_pairs(pairs, snap)
     if not identified.decided and identified.order == 1:
         return _pairs_first(pairs, paired, identified)
+    if identified.fit is None:
+        return _beside_chain(pairs, paired, identified)
     return _joined(pairs, paired, identified, snap)
+
+
+def _and_pairing(method: str) -> str:
+    """A method, and pairing as well.
+
+    Examples
+    --------
+    >>> [_and_pairing(method) for method in ("rigid chain", "identification")]
+    ['rigid chain and pairing', 'pairing and identification']
+    >>> _and_pairing("rigid chain and identification")
+    'rigid chain, pairing and identification'
+    """
+    if method == BY_CHAIN:
+        return f"{method} and pairing"
+    return method.replace(f" and {BY_WAVES}", f", {BY_WAVES}").replace(
+        BY_WAVES, f"pairing and {BY_WAVES}"
+    )
 
 
 def _both(missing: str | None, for_pairing: str) -> str:
@@ -130,30 +167,6 @@ def _noise_of_pairs(
     return MeasurementNoise(max(fit.noise.angle, LEAST_ANGLE_NOISE), 0.0)
 
 
-def _candidates(relations: list[SymmetryRelation]) -> CandidateGroup:
-    return CandidateGroup(
-        relations[0].basis,
-        np.array([r.A_sat for r in relations]),
-        np.array([r.d_sat for r in relations]),
-        np.array([r.Y for r in relations]),
-    )
-
-
-def _in_basis(relation: SymmetryRelation, basis: NDArray[np.int64]) -> SymmetryRelation | None:
-    """Write a relation in other y = B q coordinates; None where it does not act on them."""
-    B = basis.astype(float)
-    if not np.allclose(B @ relation.A @ np.linalg.pinv(B) @ B, B @ relation.A, atol=1e-9):
-        return None
-    return SymmetryRelation(relation.A, relation.d, relation.Y, basis)
-
-
-def _among(relation: SymmetryRelation, others: CandidateGroup) -> bool:
-    match = (others.Y == relation.Y).all(axis=1)
-    match &= (np.abs(others.A - relation.A_sat) < 1e-6).all(axis=(1, 2))
-    match &= (np.abs(wrap(others.d - relation.d_sat)) < SAME_ESTIMATED_OFFSET).all(axis=1)
-    return bool(match.any())
-
-
 def _pairs_first(
     pairs: PairSearch, paired: LearnedSymmetries, identified: LearnedSymmetries
 ) -> LearnedSymmetries:
@@ -163,15 +176,21 @@ def _pairs_first(
         missing = _both(missing, nothing_stands_out(pairs))
     fit = identified.fit
     if fit is not None and paired.order > 1:
-        whole = fit_group(fit, _candidates(list(paired.group)))
+        whole = fit_group(fit, candidates_of(list(paired.group)))
         flipped = identified.lack is not None and any(
             (r.Y[identified.lack.offset_joints] < 0.0).any() for r in paired.group
         )
         if whole.p_value < SIGNIFICANCE or flipped:
             contradicted = tuple(r for r in paired.relations if not r.relation.is_identity)
-            return dataclasses.replace(identified, contradicted=contradicted, method=METHOD)
+            return dataclasses.replace(
+                identified, contradicted=contradicted, method=_and_pairing(identified.method)
+            )
     return dataclasses.replace(
-        paired, missing=missing, fit=fit, method=METHOD, lack=identified.lack
+        paired,
+        missing=missing,
+        fit=fit,
+        method=_and_pairing(identified.method),
+        lack=identified.lack,
     )
 
 
@@ -184,11 +203,11 @@ def _joined(
     assert lack is not None
     examined = ExaminedFit(fit, lack, [])
     result = identified
-    group = _candidates(list(identified.group))
+    group = candidates_of(list(identified.group))
     contradicted = []
     for learned in paired.relations:
-        relation = _in_basis(learned.relation, group.basis)
-        if relation is not None and _among(relation, group):
+        relation = in_basis(learned.relation, group.basis)
+        if relation is not None and is_among(relation, group):
             continue
         larger = None if relation is None else _extended(group, relation)
         joined = None if larger is None else fit_group(fit, larger)
@@ -202,8 +221,47 @@ def _joined(
     return dataclasses.replace(
         _with_evidence(result, pairs, paired),
         contradicted=tuple(contradicted),
-        method=METHOD,
+        method=_and_pairing(identified.method),
     )
+
+
+def _beside_chain(
+    pairs: PairSearch, paired: LearnedSymmetries, identified: LearnedSymmetries
+) -> LearnedSymmetries:
+    """The relations of a chain alone, with what pairs say of them."""
+    chain = identified.chain
+    assert chain is not None
+    group = candidates_of(identified.group)
+    contradicted, open_ones = [], 0
+    for learned in paired.relations:
+        relation = in_basis(learned.relation, group.basis)
+        if relation is not None and is_among(relation, group):
+            continue
+        if _excluded(chain, learned):
+            contradicted.append(learned)
+        else:
+            open_ones += 1
+    missing = identified.missing
+    if open_ones:
+        missing = f"samples that decide about {open_ones} more relations, which pairs alone show"
+    return dataclasses.replace(
+        _with_evidence(identified, pairs, paired),
+        missing=missing,
+        contradicted=tuple(contradicted),
+        method=_and_pairing(identified.method),
+    )
+
+
+def _excluded(chain: RigidChain, learned: LearnedRelation) -> bool:
+    """Whether a chain's torques do not obey a relation, errors of both allowed for."""
+    relation, samples = learned.relation, chain.fit_.samples
+    q, image = samples.q, relation.configuration(samples.q)
+    error = np.abs(chain.predict(image) - relation.Y * chain.predict(q))
+    shift = np.linalg.pinv(relation.basis.astype(float)) @ learned.standard_error
+    allowed = chain.standard_error(image) + chain.standard_error(q)
+    allowed = allowed + np.abs(chain.jacobian(image)) @ np.abs(shift)
+    allowed = CONTRADICTED * allowed + NEGLIGIBLE * samples.largest_torque
+    return bool((error > allowed).any())
 
 
 def _extended(group: CandidateGroup, relation: SymmetryRelation) -> CandidateGroup | None:
@@ -234,12 +292,12 @@ def _with_evidence(
     freedom = noise.freedom if noise else np.inf
     refinement = Refinement(local, np.zeros(local.d.shape), sigma, freedom)
     evidence = PairEvidence(pairs.kinds, refinement, pairs.accepted, pairs.tolerance)
-    known = _candidates(list(paired.group))
+    known = candidates_of(list(paired.group))
     learned = []
     for i, relation in enumerate(result.relations):
         support = evidence.support(i)
-        in_old_basis = _in_basis(relation.relation, known.basis)
-        paired_too = in_old_basis is not None and _among(in_old_basis, known)
+        in_old_basis = in_basis(relation.relation, known.basis)
+        paired_too = in_old_basis is not None and is_among(in_old_basis, known)
         how = Knowledge.IDENTIFIED
         if paired_too:
             how = Knowledge.OBSERVED if support >= pairs.least_torques else Knowledge.IMPLIED

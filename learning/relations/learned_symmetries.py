@@ -8,10 +8,11 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.learning.statistics.lack_of_fit import LackOfFit
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
-from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation, identity
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,7 @@ class Knowledge(StrEnum):
     IMPLIED = "implied by the group"
     """It is a product of observed relations."""
     IDENTIFIED = "identified"
-    """The potential fitted to the samples has it."""
+    """The potential fitted to the samples has it: that of a rigid chain, or one of waves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,9 +138,10 @@ class LearnedSymmetries:
         What is missing before (more) relations can be claimed, or what they do not speak of;
         None where nothing is.
     method : str
-        "identification", "pairing" or "pairing and identification".
+        What the relations follow from, in words; what was asked as a second opinion is named too.
     fit : FittedPotential or None
-        The potential fitted to the samples, with its covariance.
+        The potential of waves fitted to the samples, with its covariance; None where there are too
+        few for one, and where a rigid chain of many joints makes it needless.
     rejected : tuple of RejectedPairs
         Secondary pairs, by torque signs.
     contradicted : tuple of LearnedRelation
@@ -151,6 +153,8 @@ class LearnedSymmetries:
         with a constant torque; they are not in the group.
     unmoved : tuple of int
         Joints that never moved: the relations hold at the one angle of each.
+    chain : RigidChain or None
+        The chain fitted to the samples, where the relations are its.
     """
 
     group: SymmetryGroup
@@ -163,6 +167,7 @@ class LearnedSymmetries:
     lack: LackOfFit | None = None
     of_gravity_alone: int = 0
     unmoved: tuple[int, ...] = ()
+    chain: RigidChain | None = None
 
     @property
     def decided(self) -> bool:
@@ -186,3 +191,22 @@ class LearnedSymmetries:
     def order(self) -> int:
         """Number of relations, the identity included."""
         return self.group.order
+
+
+def nothing_learned(
+    n: int,
+    missing: str,
+    method: str,
+    fit: FittedPotential | None = None,
+    lack: LackOfFit | None = None,
+) -> LearnedSymmetries:
+    """Only the identity of n joints, and why.
+
+    Examples
+    --------
+    >>> nothing_learned(2, "samples", "identification").order
+    1
+    """
+    unit = identity(n)
+    relation = LearnedRelation(unit, Knowledge.IDENTIFIED, 0, np.zeros(n), 1.0)
+    return LearnedSymmetries(SymmetryGroup([unit]), (relation,), missing, method, fit, lack=lack)

@@ -13,6 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
+from isotorque.learning.statistics.added_terms import (
+    added_terms,
+    in_words,
+    second_harmonics,
+    springs,
+)
 from isotorque.learning.statistics.constant_torques import OR_FRICTION
 from isotorque.learning.statistics.poses import Poses
 
@@ -24,10 +30,6 @@ NEGLIGIBLE = 1e-6
 """Misfits below this share of the largest torque are where motions ended; bounds allow for them."""
 PURE_ERROR_SIGNIFICANCE, PURE_ERROR_SHARE = 1e-4, 0.02
 """Where poses repeat, the misfit must be this significant and this share of the torque (RMS)."""
-SPARE = 2
-"""Degrees of freedom that an alternative must leave, to know the noise."""
-DEPENDENT = 1e-6
-"""Directions of an alternative's columns that the model holds up to this share are its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,88 +199,51 @@ def _offset_joints(fit: FittedPotential, largest: float) -> NDArray[np.intp]:
 
 def _alternatives(fit: FittedPotential, deviations: float) -> list[Alternative]:
     """The fit with springs on every joint, and with second harmonics on every joint."""
-    samples = fit.whitened
-    q, k = samples.q, len(samples.joints)
-    turns = 2.0 * q
+    q = fit.whitened.q
+    reach = np.maximum(np.pi, np.abs(q).max(axis=0))
     kinds = {
-        "spring": q[:, :, None],
-        "second harmonic": np.stack([np.cos(turns), np.sin(turns)], axis=2),
+        "spring": (springs(q), reach),
+        "second harmonic": (second_harmonics(q), np.ones(q.shape[1])),
     }
-    if len(q) * k < samples.design.shape[1] + k + SPARE:
-        return []
-    span, root = np.linalg.qr(samples.design)
     found = []
-    for name, values in kinds.items():
-        width = values.shape[2]
-        if len(q) * k >= samples.design.shape[1] + k * width + SPARE:
-            found.append(_alternative(fit, name, values, span, root, deviations))
+    for name, (values, size) in kinds.items():
+        alternative = _alternative(fit, name, values, size, deviations)
+        if alternative is not None:
+            found.append(alternative)
     return found
 
 
 def _alternative(
-    fit: FittedPotential, name: str, values: Array, span: Array, root: Array, deviations: float
-) -> Alternative:
+    fit: FittedPotential, name: str, values: Array, reach: Array, deviations: float
+) -> Alternative | None:
     samples = fit.whitened
-    count, k, width = values.shape
-    size = np.sqrt(np.mean(values**2, axis=0)) + 1e-300  # (k, width)
-    columns = np.einsum("Nij,Njw->Nijw", samples.whitening, values / size)
-    columns = columns.reshape(count * k, k * width)
-    held = span.T @ columns
-    beyond = columns - span @ held
-    again = span.T @ beyond
-    beyond, held = beyond - span @ again, held + again
-    left, singular, right = np.linalg.svd(beyond, full_matrices=False)
-    whole = np.linalg.norm(columns, axis=0).max()
-    seen = singular > DEPENDENT * whole
-    left, singular, right = left[:, seen], singular[seen], right[seen]
-    coordinates = left.T @ samples.residual
-    rest = samples.residual - left @ coordinates
-    lever = (span**2).sum(axis=1) + (left**2).sum(axis=1)
-    degrees = int(seen.sum())
-    freedom = count * k - span.shape[1] - degrees
-    own = np.maximum(count - lever.reshape(count, k).sum(axis=0), 1e-9)
-    level = (rest.reshape(count, k) ** 2).sum(axis=0) / own
-    if own.min() < SPARE:  # too few to tell joints apart
-        level = np.full(k, float(rest @ rest) / max(1, freedom))
-    # noise given too small is no further term: that is found by itself
-    level = np.maximum(level, samples.floor if np.isfinite(fit.freedom) else 1.0)
-    weight = np.tile(level, count)
-    spread = (left * weight[:, None]).T @ left  # covariance of the coordinates
-    own_freedom = float(freedom) / k if np.isfinite(fit.freedom) else np.inf
-    statistic = float(coordinates @ np.linalg.solve(spread, coordinates)) if degrees else 0.0
-    back = right.T / singular
-    terms = back @ coordinates
-    covariance = back @ spread @ back.T
-    effect = np.linalg.solve(root, held)  # what one unit of a term takes from the coefficients
-    estimate = -effect @ terms
-    more = effect @ covariance @ effect.T
+    known = not np.isfinite(fit.freedom)
+    added = added_terms(
+        samples.design,
+        samples.residual,
+        samples.whitening,
+        values,
+        floor=1.0 if known else samples.floor,
+        known_noise=known,
+    )
+    if added is None:
+        return None
+    k = len(samples.joints)
     offsets, errors = fit.offsets.copy(), fit.offset_errors.copy()
-    offsets[samples.joints] += estimate[:k]
-    errors[samples.joints] = np.sqrt(errors[samples.joints] ** 2 + np.diag(more)[:k])
+    offsets[samples.joints] += added.change[:k]
+    errors[samples.joints] = np.sqrt(errors[samples.joints] ** 2 + np.diag(added.more)[:k])
     extended = replace(
         fit,
-        coefficients=fit.coefficients + estimate[k:],
-        root=_root(fit.root, more[k:, k:]),
+        coefficients=fit.coefficients + added.change[k:],
+        root=_root(fit.root, added.more[k:, k:]),
         offsets=offsets,
         offset_errors=errors,
     )
-    torque = np.linalg.solve(samples.whitening, (left @ coordinates).reshape(count, k, 1))[:, :, 0]
-    misfit = np.zeros(len(fit.offsets))
-    misfit[samples.joints] = np.sqrt(np.mean(torque**2, axis=0))
-    per_unit = terms.reshape(k, width) / size
-    doubt = np.sqrt(np.maximum(np.diag(covariance), 0.0)).reshape(k, width) / size
-    reach = np.maximum(np.pi, np.abs(samples.q).max(axis=0)) if width == 1 else np.ones(k)
-    largest = np.zeros(len(fit.offsets))
-    limit = np.linalg.norm(np.abs(per_unit) + deviations * doubt, axis=1)
-    largest[samples.joints] = limit * reach
-    return Alternative(
-        name,
-        extended,
-        largest,
-        tail_probability(statistic, degrees, own_freedom),
-        misfit,
-        _in_words(per_unit, doubt, samples.joints),
-    )
+    misfit, largest = np.zeros((2, len(fit.offsets)))
+    misfit[samples.joints] = added.misfit
+    largest[samples.joints] = added.largest(deviations, reach)
+    said = in_words(added, samples.joints)
+    return Alternative(name, extended, largest, added.p_value, misfit, said)
 
 
 def _root(root: Array, more: Array) -> Array:
@@ -286,19 +251,6 @@ def _root(root: Array, more: Array) -> Array:
     # (I + root more root^T) is well conditioned whatever the units of the coefficients
     inner = np.eye(len(root)) + root @ more @ root.T
     return np.asarray(np.linalg.solve(np.linalg.cholesky((inner + inner.T) / 2.0), root))
-
-
-def _in_words(terms: Array, doubt: Array, joints: NDArray[np.intp]) -> str:
-    """Say the terms that stand out, at least the largest."""
-    ratio = np.linalg.norm(terms / np.maximum(doubt, 1e-300), axis=1)
-    told = np.flatnonzero(ratio >= max(3.0, 0.2 * float(ratio.max(initial=0.0))))
-    if not len(told):
-        told = np.array([int(ratio.argmax())])
-    if terms.shape[1] == 1:
-        sizes = ", ".join(f"{terms[j, 0]:+.3g} N m/rad on joint {joints[j] + 1}" for j in told)
-        return f"a torque that grows with its angle (a spring), {sizes}"
-    sizes = ", ".join(f"{np.linalg.norm(terms[j]):.3g} N m on joint {joints[j] + 1}" for j in told)
-    return f"a torque of twice the angle (a cable, a bent link), {sizes}"
 
 
 def _residual_torque(fit: FittedPotential) -> Array:

@@ -134,20 +134,20 @@ MUTATIONS = (
         "torques that samples leave open have infinite errors",
     ),
     Mutation(
-        "learning/relations/chain_identification.py",
-        "if worst > LARGEST_ERROR * float(np.abs(torques).max()):",
+        "learning/relations/identification/chain_identification.py",
+        "if excess > 1.0:",
         "if False:",
         (
-            "tests/learning/relations/test_chain_identification.py"
+            "tests/learning/relations/identification/test_chain_identification.py"
             "::test_no_relation_is_claimed_that_could_be_wrong_by_a_twentieth",
         ),
         "relations that could be wrong by much are not claimed",
     ),
     Mutation(
-        "learning/relations/chain_identification.py",
-        "or _shows_constants(learner, configurations, torques):",
-        "or False:",
-        ("tests/learning/relations/test_chain_identification.py",),
+        "learning/relations/identification/chain_identification.py",
+        "if found.beside.said:",
+        "if False:",
+        ("tests/learning/relations/identification/test_chain_identification.py",),
         "a constant that passes for noise makes relations false",
     ),
 )

@@ -13,8 +13,6 @@ from isotorque.learning.files.csv_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation, cross_validate
 from isotorque.learning.learners.registry import LearningTask, learner_by_name
 from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted
-from isotorque.learning.relations.chain_identification import METHOD as CHAIN
-from isotorque.learning.relations.chain_identification import with_chain
 from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.relations.testing.supported_group import SupportedGroup, supported_group
 from isotorque.learning.statistics.poses import group_poses
@@ -107,9 +105,9 @@ class RelationsOfData:
 
     def _learned(self, left_out: Flags) -> tuple[SymmetryGroup | None, tuple[str, ...]]:
         q, tau = self._samples.q[~left_out], self._samples.tau[~left_out]
-        found = with_chain(learn_relations(q, tau), q, tau)
+        found = learn_relations(q, tau)
         said = f"{found.order} symmetry relations learned from the data"
-        if found.method == CHAIN:
+        if found.chain is not None:
             said += ", by a rigid chain"
         if found.note:
             said += f"; {found.note}"

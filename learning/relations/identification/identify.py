@@ -1,53 +1,30 @@
-"""Symmetries identified from static samples through one fitted potential, without pairing."""
+"""Symmetries identified from static samples: by a rigid chain first, by waves for a second time."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import dataclasses
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
 
-from isotorque.learning.relations.claim_bounds import claim_bounds
-from isotorque.learning.relations.examined_fit import LARGEST_ERROR, ExaminedFit, examined_fit
-from isotorque.learning.relations.identification.group_fit import GroupFit
-from isotorque.learning.relations.identification.group_search import (
-    candidate_relations,
-    largest_consistent_group,
+from isotorque.learning.relations.identification.chain_identification import identify_by_chain
+from isotorque.learning.relations.identification.group_fit import fit_group
+from isotorque.learning.relations.identification.wave_identification import (
+    SIGNIFICANCE,
+    identify_by_waves,
 )
-from isotorque.learning.relations.identification.offset_snapping import snapped_offsets
-from isotorque.learning.relations.learned_symmetries import (
-    Knowledge,
-    LearnedRelation,
-    LearnedSymmetries,
-)
-from isotorque.learning.relations.potential.errors_in_variables import (
-    MeasurementNoise,
-    Undetermined,
-)
-from isotorque.learning.relations.potential.potential_fit import (
-    FittedPotential,
-    present_frequencies,
-    quantile,
-)
-from isotorque.learning.relations.potential.samples_needed import samples_needed
+from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.learning.relations.static_samples import static_samples
-from isotorque.learning.statistics.lack_of_fit import LackOfFit
-from isotorque.learning.statistics.misfit_advice import misfit_advice
-from isotorque.learning.statistics.poses import by_pose
-from isotorque.learning.statistics.torque_scales import torque_scales
-from isotorque.symbolic.groups.group_arrays import lifted_relations
+from isotorque.symbolic.common.angles import wrap
+from isotorque.symbolic.groups.group_arrays import SAME_ESTIMATED_OFFSET, CandidateGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
-from isotorque.symbolic.groups.symmetry_relation import identity
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
-Array = NDArray[np.float64]
-
-SIGNIFICANCE = 1e-4
-"""Hypotheses with a smaller p-value are contradicted by the data."""
-PRESENCE = (1e-2, 1e-4, 1e-6)
-"""Levels at which a frequency counts as present; each gives candidate groups."""
-SCREEN = 1e-9
-"""Candidates are dropped unseen if one coefficient is off by this small a chance."""
+BOTH = "rigid chain and identification"
+SECOND_OPINION = 3
+"""Up to so many joints waves are fitted beside a chain that was accepted: they are few."""
 
 
 def identify(
@@ -56,6 +33,7 @@ def identify(
     *,
     noise: MeasurementNoise | None = None,
     snap: bool = True,
+    parents: Sequence[int] | None = None,
 ) -> LearnedSymmetries:
     """Find the symmetry group of the torque map behind static samples.
 
@@ -68,14 +46,18 @@ def identify(
     noise : MeasurementNoise, optional
         Noise levels where known; estimated from the misfit otherwise.
     snap : bool
-        Round offsets to multiples of a right angle where all of them agree (`snapped_offsets`);
-        every relation says whether that was done.
+        Round offsets to multiples of a right angle where all of them agree; every relation says
+        whether that was done. A rigid chain has symmetries because its angles are set: False
+        leaves it out.
+    parents : sequence of int, optional
+        Joint that carries each joint, -1 for the base; in series by default. Waves need no such
+        thing.
 
     Returns
     -------
     LearnedSymmetries
         ``missing`` says what the data lack; where it is not None only the identity is claimed,
-        unless it speaks of joints that never moved.
+        unless it speaks of joints that never moved, or of what the methods disagree on.
 
     Raises
     ------
@@ -84,19 +66,12 @@ def identify(
 
     Notes
     -----
-    One potential is fitted to all samples (docs/theory.md, "Identification"). Frequencies whose
-    coefficients differ significantly from zero give candidate relations; the largest closed set of
-    them whose symmetric potential explains the data as well as an unrestricted one (F or chi-square
-    test) is the group. It is claimed only if the data would have shown a violation: the torque
-    error that every relation may have at three standard errors must be small. Offsets and their
-    errors come from the symmetric fit, so they compose exactly.
-
-    Joints whose torque is zero in all samples are left out, after a check that the torque does not
-    depend on them.
-
-    Rows of one pose count as one sample (`group_poses`). Before anything is claimed the samples
-    must not show what the form has no term for (`lack_of_fit`), and a constant torque of a joint is
-    part of the form: relations that flip it are not claimed of the measured torque.
+    A rigid chain is fitted first (`identify_by_chain`): a handful of samples determines it. Where
+    it can be claimed and joints are more than three, that is all. With up to three, waves are
+    fitted as well (`identify_by_waves`): the form that every arm of rigid links and revolute
+    joints has, be it a chain or not, and constant torques. They have the last word where they
+    see torques that are no gravity, and constants; relations of the chain that they contradict
+    are not claimed. Where no chain is accepted, or waves find more, what they say stands.
 
     Examples
     --------
@@ -105,119 +80,96 @@ def identify(
     >>> lower = 6.1 * np.cos(q[:, 0] + q[:, 1])
     >>> tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
     >>> found = identify(q, tau)
-    >>> found.order, found.missing
-    (8, None)
+    >>> found.order, found.missing, found.method
+    (8, None, 'rigid chain and identification')
+    >>> identify(q[:4], tau[:4]).method
+    'rigid chain'
     >>> print(identify(q[:3], tau[:3]).missing)
-    3 more samples: 3 different ones were given, 6 determine 8 coefficients and 2 constants and
-    check them
+    1 more poses: 3 different ones were given, 4 are needed (rigid chain); 3 more samples: 3
+    different ones were given, 6 determine 8 coefficients and 2 constants and check them (any arm)
     """
     configurations, torques = static_samples(q, tau)
-    n = configurations.shape[1]
-    try:
-        examined = examined_fit(configurations, torques, noise)
-    except Undetermined as lacking:
-        return _nothing(n, str(lacking))
-    fit, lack = examined.fit, examined.lack
-    if lack.failed:
-        _, poses, means = by_pose(configurations, torques)
-        scales = torque_scales(poses, means, fit.frequencies)
-        said = examined.obstacle if scales is None else f"{examined.obstacle}, or {scales}"
-        return _nothing(n, said, fit, lack)
-    best = _best_group(fit)
-    if best is None:
-        missing = "more samples: no coefficient of the fitted potential stands out of the noise"
-        found = _nothing(n, missing, fit, lack)
-    else:
-        found = claim(examined, best, snap)
-    if found.decided:
-        return found
-    _, poses, means = by_pose(configurations, torques)
-    return replace(found, missing=misfit_advice(poses, means, fit.frequencies) or found.missing)
+    if not snap or not torques.any():
+        return identify_by_waves(configurations, torques, noise=noise, snap=snap)
+    chain = identify_by_chain(configurations, torques, noise=noise, parents=parents)
+    if chain.decided and configurations.shape[1] > SECOND_OPINION:
+        return chain
+    waves = identify_by_waves(configurations, torques, noise=noise)
+    if not chain.decided:
+        return _without_chain(chain, waves)
+    return _agreed(chain, waves)
 
 
-def _nothing(
-    n: int, missing: str, fit: FittedPotential | None = None, lack: LackOfFit | None = None
+def _without_chain(chain: LearnedSymmetries, waves: LearnedSymmetries) -> LearnedSymmetries:
+    """What waves say, and what stands in the way of a chain where they lack samples."""
+    if waves.fit is not None:
+        return waves
+    missing = f"{chain.missing} (rigid chain); {waves.missing} (any arm)"
+    return dataclasses.replace(waves, missing=missing, lack=chain.lack)
+
+
+def _agreed(chain: LearnedSymmetries, waves: LearnedSymmetries) -> LearnedSymmetries:
+    """The relations of a chain, if waves do not contradict them."""
+    fit, lack = waves.fit, waves.lack
+    if fit is None or lack is None:
+        return chain
+    if lack.failed or len(lack.offset_joints) or waves.unmoved:
+        return waves
+    group = candidates_of(chain.group)
+    whole = fit_group(fit, group)
+    if whole.p_value < SIGNIFICANCE:
+        return _common(chain, waves, whole.p_value)
+    if waves.decided and waves.order > chain.order:
+        return waves
+    relations = tuple(
+        dataclasses.replace(entry, standard_error=error, p_value=min(entry.p_value, whole.p_value))
+        for entry, error in zip(chain.relations, whole.offset_errors, strict=True)
+    )
+    return dataclasses.replace(chain, relations=relations, fit=fit, lack=lack, method=BOTH)
+
+
+def _common(
+    chain: LearnedSymmetries, waves: LearnedSymmetries, p_value: float
 ) -> LearnedSymmetries:
-    unit = identity(n)
-    zero = np.zeros(n)
-    relation = LearnedRelation(unit, Knowledge.IDENTIFIED, 0, zero, 1.0)
-    group = SymmetryGroup([unit])
-    return LearnedSymmetries(group, (relation,), missing, "identification", fit, lack=lack)
-
-
-def _best_group(fit: FittedPotential) -> GroupFit | None:
-    """Largest consistent group over several ideas of which frequencies are present."""
-    deviations = quantile(float(stats.norm.isf(SCREEN)), fit.freedom)
-    best: GroupFit | None = None
-    tried: set[bytes] = set()
-    for level in PRESENCE:
-        keep = present_frequencies(fit, level)
-        if not keep.any() or keep.tobytes() in tried:
-            continue
-        tried.add(keep.tobytes())
-        candidates = candidate_relations(fit, keep, deviations)
-        found = largest_consistent_group(fit, candidates, SIGNIFICANCE)
-        if found.p_value < SIGNIFICANCE:
-            continue
-        if best is None or len(found.group) > len(best.group):
-            best = found
-    return best
-
-
-def claim(examined: ExaminedFit, best: GroupFit, snap: bool) -> LearnedSymmetries:
-    """State a group that the data agree with, or say how much data would be needed to claim it.
-
-    Parameters
-    ----------
-    examined : ExaminedFit
-        Without lack of fit.
-    best : GroupFit
-        Of the same fit.
-    snap : bool
-        Round offsets to multiples of a right angle where they agree.
-
-    Notes
-    -----
-    Relations are claimed of the torque that was measured. Where a joint carries a constant torque
-    b beside gravity, those that flip its sign hold of gravity alone: they miss the measured torque
-    by 2 b, and are left out (the others form a subgroup).
-    """
-    fit, lack, unmoved = examined.fit, examined.lack, examined.unmoved
-    rounded = snapped_offsets(best.group, best.offset_errors) if snap else None
-    whole = rounded or best.group
-    kept = np.flatnonzero((whole.Y[:, lack.offset_joints] > 0.0).all(axis=1))
-    group = whole.take(kept)
-    bound, rms = claim_bounds(fit, lack, group, examined.deviations)
-    n = bound.shape[1]
-    size = fit.rms_torque()
-    involved = group.basis.any(axis=0)
-    excess = float((rms / np.where(size > 0.0, size, np.inf))[:, involved].max(initial=0.0))
-    excess /= LARGEST_ERROR
-    if excess > 1.0:
-        missing = (
-            f"{samples_needed(fit.samples, excess)}: relations could still be wrong by "
-            f"{100.0 * LARGEST_ERROR * excess:.2g} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
-            "are allowed"
-        )
-        return _nothing(n, missing, fit, lack)
-    relations = lifted_relations(group, bound)
-    learned = tuple(
-        LearnedRelation(
-            r, Knowledge.IDENTIFIED, 0, error, best.p_value, snapped=rounded is not None
-        )
-        for r, error in zip(relations, best.offset_errors[kept], strict=True)
+    """What waves claim and the chain has too, where they do not agree."""
+    known = candidates_of(chain.group)
+    kept = []
+    for entry in waves.relations:
+        relation = in_basis(entry.relation, known.basis)
+        if relation is not None and is_among(relation, known):
+            kept.append(entry)
+    missing = (
+        f"samples that decide: {chain.order} relations of a rigid chain fit them, and are "
+        f"contradicted by the potential of any arm (p = {p_value:.1g})"
     )
-    unknown = None
-    if unmoved:
-        names = ", ".join(str(joint + 1) for joint in unmoved)
-        unknown = f"samples in which joint {names} moves: the relations hold at its one angle"
-    return LearnedSymmetries(
-        SymmetryGroup(relations),
-        learned,
-        unknown,
-        "identification",
-        fit,
-        lack=lack,
-        of_gravity_alone=len(whole) - len(kept),
-        unmoved=tuple(unmoved),
+    group = SymmetryGroup([entry.relation for entry in kept])
+    return dataclasses.replace(
+        waves, group=group, relations=tuple(kept), missing=missing, method=BOTH
     )
+
+
+def candidates_of(relations: Iterable[SymmetryRelation]) -> CandidateGroup:
+    """Relations of one group as arrays."""
+    listed = list(relations)
+    return CandidateGroup(
+        listed[0].basis,
+        np.array([r.A_sat for r in listed]),
+        np.array([r.d_sat for r in listed]),
+        np.array([r.Y for r in listed]),
+    )
+
+
+def in_basis(relation: SymmetryRelation, basis: NDArray[np.int64]) -> SymmetryRelation | None:
+    """Write a relation in other y = B q coordinates; None where it does not act on them."""
+    B = basis.astype(float)
+    if not np.allclose(B @ relation.A @ np.linalg.pinv(B) @ B, B @ relation.A, atol=1e-9):
+        return None
+    return SymmetryRelation(relation.A, relation.d, relation.Y, basis)
+
+
+def is_among(relation: SymmetryRelation, others: CandidateGroup) -> bool:
+    """Whether a relation is one of others in the same coordinates, up to errors of offsets."""
+    match = (others.Y == relation.Y).all(axis=1)
+    match &= (np.abs(others.A - relation.A_sat) < 1e-6).all(axis=(1, 2))
+    match &= (np.abs(wrap(others.d - relation.d_sat)) < SAME_ESTIMATED_OFFSET).all(axis=1)
+    return bool(match.any())

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from isotorque.learning.relations.claim_bounds import claim_bounds
 from isotorque.learning.relations.examined_fit import LARGEST_ERROR, ExaminedFit, examined_fit
-from isotorque.learning.relations.identification.identify import SIGNIFICANCE
+from isotorque.learning.relations.identification.wave_identification import SIGNIFICANCE
 from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
     Undetermined,

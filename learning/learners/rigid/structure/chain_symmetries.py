@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +13,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     raw_directions,
 )
 from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
+from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain, beside_chain
 from isotorque.learning.learners.rigid.structure.expansion import expanded
 from isotorque.learning.learners.rigid.structure.snapping import SnappedChain
 from isotorque.learning.statistics.constant_torques import OR_FRICTION
@@ -44,7 +44,12 @@ class ChainSymmetries:
     group : SymmetryGroup
         Exact for the snapped chain (nearly exact, where a tolerance was given). ``bound`` of
         each relation [N m] holds for the measured arm at three standard errors: it contains
-        what was snapped, levers set to zero among it.
+        what was snapped, levers set to zero among it, and constant torques, springs and cables
+        as large as the samples leave room for.
+    gravity_bounds : (order, n) array
+        The same of gravity alone, if the arm is a rigid chain [N m].
+    beside : BesideChain
+        What the samples show beside the chain: where they do, its relations are not to be claimed.
     corrections : (order, n) array
         c of each relation of the measured torque, ``tau' = Y tau + c`` [N m]: twice the offset of
         the sensor where the torque changes sign.
@@ -55,6 +60,8 @@ class ChainSymmetries:
     """
 
     group: SymmetryGroup
+    gravity_bounds: Array
+    beside: BesideChain
     corrections: Array
     snapped: SnappedChain
     alternatives: tuple[SymmetryGroup, ...] = ()
@@ -110,64 +117,79 @@ def chain_symmetries(
     chain has a proved bound (zero without a tolerance). What the chain as it was fitted, nothing
     snapped, has beside that is taken at many configurations, three of its standard errors are
     added point by point, and the largest counts. Standard errors come from derivatives and from
-    repeated experiments, as those of torques (`TorqueErrors`).
+    repeated experiments, as those of torques (`TorqueErrors`). The same with every kind of torque
+    beside the chain that samples do not exclude (`beside_chain`), the chain changed as far as it
+    has taken part of it for gravity: the largest is the bound of the measured torque.
     """
     potential = expanded(snapped.chain)
     if tolerance > 0:
         groups = maximal_groups(potential, tolerance)
     else:
         groups = [exact_symmetries(potential)]
+    beside = beside_chain(fit, DEVIATIONS)
+    bounds = _Bounds(fit, errors, snapped, potential, beside)
+    bounded, gravity = [], []
+    for group in groups:
+        both = [bounds.of(relation) for relation in group]
+        gravity.append(np.array([of_gravity for of_gravity, _ in both]))
+        bounded.append(
+            SymmetryGroup(
+                [
+                    SymmetryRelation(r.A, r.unwrapped_d, r.Y, r.basis, r.is_identity, bound)
+                    for r, (_, bound) in zip(group, both, strict=True)
+                ]
+            )
+        )
     offsets = fit.chain.offsets
-    bounded = [_bounded(group, fit, errors, snapped, potential) for group in groups]
     corrections = np.array([offsets - r.Y * offsets for r in bounded[0]])
-    return ChainSymmetries(bounded[0], corrections, snapped, tuple(bounded[1:]))
+    return ChainSymmetries(bounded[0], gravity[0], beside, corrections, snapped, tuple(bounded[1:]))
 
 
-def _bounded(
-    group: SymmetryGroup,
-    fit: ChainFit,
-    errors: TorqueErrors,
-    snapped: SnappedChain,
-    potential: TrigonometricPolynomial,
-) -> SymmetryGroup:
-    bounds = _bounds(group, fit, errors, snapped, potential)
-    return SymmetryGroup(
-        [
-            SymmetryRelation(r.A, r.unwrapped_d, r.Y, r.basis, r.is_identity, bound)
-            for r, bound in zip(group, bounds, strict=True)
-        ]
-    )
+class _Bounds:
+    """Bounds of relations of one chain, at the same configurations each."""
 
+    def __init__(
+        self,
+        fit: ChainFit,
+        errors: TorqueErrors,
+        snapped: SnappedChain,
+        potential: TrigonometricPolynomial,
+        beside: BesideChain,
+    ) -> None:
+        self._fit, self._errors, self._beside = fit, errors, beside
+        self._special, self._potential = snapped.chain, potential
+        n = fit.chain.n
+        self._q = np.random.default_rng(0).uniform(-np.pi, np.pi, (POINTS, n))
+        self._here = _Evaluated(fit, errors.replicas, self._q)
+        self._torque = self._special.torque(self._q)
+        self._offsets = fit.chain.offsets - self._special.offsets
+        largest = float(np.abs(self._here.torque).max())
+        self._floor = FLOOR * max(largest, fit.samples.largest_torque)
 
-def _bounds(
-    group: SymmetryGroup,
-    fit: ChainFit,
-    errors: TorqueErrors,
-    snapped: SnappedChain,
-    potential: TrigonometricPolynomial,
-) -> Iterator[Array]:
-    n = group.n
-    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (POINTS, n))
-    here = _Evaluated(fit, errors.replicas, q)
-    special = snapped.chain
-    torque, offsets = special.torque(q), fit.chain.offsets - special.offsets
-    floor = FLOOR * max(float(np.abs(here.torque).max()), fit.samples.largest_torque)
-    for relation in group:
+    def of(self, relation: SymmetryRelation) -> tuple[Array, Array]:
+        """Of gravity alone, and of the measured torque, (n,) [N m] each."""
+        fit, here, Y = self._fit, self._here, relation.Y
         if relation.is_identity:
-            yield np.zeros(n)
-            continue
-        there = _Evaluated(fit, errors.replicas, relation.configuration(q))
-        Y = relation.Y
-        proved = residual_bound(potential, relation.A, relation.unwrapped_d, Y)
-        moved = there.torque - special.torque(relation.configuration(q))
-        fitted = moved - Y * (here.torque - torque) - (offsets - Y * offsets)
-        linear = np.linalg.norm(there.slopes - Y[:, None] * here.slopes, axis=2) * fit.spread
-        error = linear
+            return np.zeros(relation.n), np.zeros(relation.n)
+        there = _Evaluated(fit, self._errors.replicas, relation.configuration(self._q))
+        proved = residual_bound(self._potential, relation.A, relation.unwrapped_d, Y)
+        moved = there.torque - self._special.torque(relation.configuration(self._q))
+        fitted = moved - Y * (here.torque - self._torque)
+        fitted = fitted - (self._offsets - Y * self._offsets)
+        slopes = there.slopes - Y[:, None] * here.slopes
+        error = np.linalg.norm(slopes, axis=2) * fit.spread
         if len(here.replicas):
             changed = there.replicas - there.torque - Y * (here.replicas - here.torque)
-            error = np.maximum(linear, fit.spread * np.sqrt(np.mean(changed**2, axis=0)))
-        measured = (np.abs(fitted) + DEVIATIONS * error).max(axis=0)
-        yield np.maximum(np.abs(special.gains) * proved + measured, floor)
+            error = np.maximum(error, fit.spread * np.sqrt(np.mean(changed**2, axis=0)))
+        error = DEVIATIONS * error
+        least = np.abs(self._special.gains) * proved
+        gravity = np.maximum(least + (np.abs(fitted) + error).max(axis=0), self._floor)
+        bound = gravity
+        for term in self._beside.terms:
+            more = np.linalg.norm(slopes @ term.root, axis=2)
+            size = np.abs(fitted + slopes @ term.change) + np.hypot(error, more)
+            bound = np.maximum(bound, least + size.max(axis=0) + term.missed(relation))
+        return gravity, bound
 
 
 class _Evaluated:

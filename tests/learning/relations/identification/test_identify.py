@@ -3,7 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from isotorque.learning.relations.identification.chain_identification import identify_by_chain
 from isotorque.learning.relations.identification.identify import identify
+from isotorque.learning.relations.identification.wave_identification import identify_by_waves
 from isotorque.learning.relations.learned_symmetries import Knowledge
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.symbolic.common.errors import InputError
@@ -12,6 +14,7 @@ from isotorque.verify.testing.strategies import known_arms
 from tests.learning.static_data import (
     false_relations,
     known_potential,
+    recording,
     same_group,
     stable_samples,
     with_angle_noise,
@@ -157,9 +160,13 @@ def test_a_joint_that_never_moved_is_reported_with_the_relations():
     potential, group = known_potential("ur5")
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (12, 6))
     q[:, 5] = 0.3
-    learned = identify(q, potential.gradient(q))
+    learned = identify_by_waves(q, potential.gradient(q))
     assert learned.order == group.order
     assert "joint 6" in learned.missing
+    # a chain needs no motion of it: a lever would have been felt while others turned it about
+    by_chain = identify(q, potential.gradient(q))
+    assert same_group(by_chain.group, group, 1e-9)
+    assert by_chain.missing is None
 
 
 def test_known_noise_is_used():
@@ -219,20 +226,29 @@ def test_joints_that_no_static_torque_drives_do_not_keep_relations_from_being_de
     assert "joint 1, 5, 6 moves" in found.missing
 
 
-@pytest.mark.parametrize(("name", "count"), [("pendulum", 3), ("2r", 5), ("3r", 9)])
-def test_exact_samples_suffice_that_determine_a_potential_and_check_it(name, count):
+@pytest.mark.parametrize(
+    ("name", "count", "by"),
+    [
+        ("pendulum", 3, identify),
+        ("2r", 4, identify),
+        ("3r", 4, identify),
+        ("2r", 5, identify_by_waves),
+        ("3r", 9, identify_by_waves),
+    ],
+)
+def test_exact_samples_suffice_that_determine_a_potential_and_check_it(name, count, by):
     """Constants cost no sample where there are none: more equations than coefficients are met."""
     potential, group = known_potential(name)
     unit = np.eye(potential.n)
     for seed in range(5):
         q = np.random.default_rng(seed).uniform(-2.0, 2.0, (count, potential.n))
         tau = potential.gradient(q)
-        assert identify(q, tau).order == group.order
-        assert identify(q[1:], tau[1:]).order == 1
+        assert by(q, tau).order == group.order
+        assert by(q[1:], tau[1:]).order == 1
         # and what is more than gravity shows: constants, springs, noise
         noise = 1e-4 * np.random.default_rng(seed).normal(size=q.shape)
         for more in (0.01 * unit[-1], 0.01 * q, noise):
-            found = identify(q, tau + more)
+            found = by(q, tau + more)
             assert found.order == 1
             assert "and check them" in found.missing
 
@@ -250,3 +266,30 @@ def test_what_could_be_wrong_by_a_tenth_of_the_torque_is_not_claimed(noise):
         said.append("relations could still be wrong by" in (learned.missing or ""))
         assert learned.order == 1
     assert any(said)
+
+
+def test_waves_veto_what_a_chain_takes_for_noise():
+    """A chain in disguise: three joints whose torques fit one within noise, and waves see more."""
+    potential, group = known_potential("3r")
+    rng = np.random.default_rng(0)
+    q = rng.uniform(-np.pi, np.pi, (400, 3))
+    tau = potential.gradient(q) + 0.05 * rng.normal(size=q.shape)
+    # no rigid arm has this wave without others: chains leave it to the noise
+    wave = TrigonometricPolynomial([[1, -1, 0]], [0.15], [0.1])
+    learned = identify(q, tau + wave.gradient(q))
+    assert learned.order < group.order
+    for relation in learned.group:
+        arm = potential + wave
+        error = worst_torque_error(relation, arm, np.random.default_rng(1))
+        assert (error <= relation.bound + 1e-9).all()
+
+
+def test_many_images_of_few_torques_do_not_make_a_chain():
+    """Orbits of few samples fill equations, and false chains explain them exactly."""
+    for name, torques in (("3r", 2), ("4r-planar", 3)):
+        potential, group = known_potential(name)
+        q, tau = recording(potential, group, np.random.default_rng(0), torques)
+        found = identify_by_chain(q, tau)
+        assert found.order == 1
+        assert "different |torque|" in found.missing
+        assert "more torques" in found.missing

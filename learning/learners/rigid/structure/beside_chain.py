@@ -1,0 +1,161 @@
+"""Torques beside a fitted chain: what samples show of them, and what they leave room for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
+from isotorque.learning.learners.rigid.fitting.chain_parameters import raw_directions
+from isotorque.learning.relations.potential.potential_fit import quantile
+from isotorque.learning.statistics.added_terms import (
+    AddedTerms,
+    added_terms,
+    in_words,
+    second_harmonics,
+    springs,
+)
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
+
+Array = NDArray[np.float64]
+
+SIGNIFICANCE = 1e-3
+"""Chance with which samples of a rigid arm are said to show another torque, over all kinds."""
+NEGLIGIBLE = 1e-6
+"""Torques below this share of the largest are where motions ended; bounds allow for them."""
+WIDER = 1.2
+"""Errors of these terms, to first order, are too small by so much where an arm hangs: it then moves
+little, and its chain gives way by more than its derivatives say (measured on the 3R)."""
+CONSTANT, SPRING, CABLE = "constant", "spring", "second harmonic"
+
+
+@dataclass(frozen=True, eq=False)
+class TermBeside:
+    """Torques of one kind that every joint may have beside the chain.
+
+    Attributes
+    ----------
+    kind : str
+        ``constant``, ``spring`` or ``second harmonic``.
+    change : (rank,) array
+        Of the chain, if the torques are there, in the coordinates of ``Information.factor``.
+    root : (rank, rank) array
+        R with R R^T the covariance that they add in these coordinates, deviations included.
+    largest : (n,) array
+        Torque that each joint's may have [N m].
+    p_value : float
+        Chance of such an improvement, or a larger one, without them.
+    misfit : (n,) array
+        Root mean square over the samples of what they explain better [N m].
+    said : str
+        In words, with numbers.
+    """
+
+    kind: str
+    change: Array
+    root: Array
+    largest: Array
+    p_value: float
+    misfit: Array
+    said: str
+
+    def missed(self, relation: SymmetryRelation) -> Array:
+        """How far the measured torque misses a relation of gravity through them, (n,) [N m]."""
+        A, Y = relation.A, relation.Y
+        unit = np.eye(len(Y))
+        if self.kind == CONSTANT:
+            follows = Y > 0.0
+        else:
+            same = unit * Y[:, None] if self.kind == SPRING else unit
+            follows = (same == A).all(axis=1) & (relation.d == 0.0)
+            follows &= (Y > 0.0) | (self.kind == SPRING)
+        return np.where(follows, 0.0, 2.0 * self.largest)
+
+
+@dataclass(frozen=True, eq=False)
+class BesideChain:
+    """What samples say of torques beside a fitted chain.
+
+    Attributes
+    ----------
+    terms : tuple of TermBeside
+        Of all kinds that there were samples enough for.
+    said : str
+        What is there beside the chain, with its size; empty where samples show nothing.
+    """
+
+    terms: tuple[TermBeside, ...]
+    said: str
+
+
+def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
+    """Look for constants, springs and cables that a chain cannot explain.
+
+    Parameters
+    ----------
+    fit : ChainFit
+        An accepted fit.
+    deviations : float
+        Standard errors that ``TermBeside.largest`` allows for: any term of any joint exceeds it
+        as rarely as one normal variable exceeds so many.
+
+    Notes
+    -----
+    A chain is flexible enough to take part of a spring or of a constant torque for gravity, and
+    what it leaves passes for noise. So terms of each kind are added at every joint, to first order
+    (the chain gives way as far as its derivatives let it), as in `lack_of_fit`.
+    """
+    samples, information = fit.samples, fit.information
+    q = samples.q
+    slopes = fit.chain.derivatives(q, raw_directions(fit.chain.n))
+    rows = fit.whitening @ slopes.by_parameters()[:, :, information.free] @ information.factor
+    residual = np.einsum("kij,kj->ki", fit.whitening, samples.torque - slopes.torque)
+    reach = np.maximum(np.pi, np.abs(q).max(axis=0))
+    one = np.ones(samples.n)
+    kinds = {
+        CONSTANT: (np.ones((*q.shape, 1)), one),
+        SPRING: (springs(q), reach),
+        CABLE: (second_harmonics(q), one),
+    }
+    every = len(kinds) * samples.n
+    deviations = float(stats.norm.isf(stats.norm.sf(deviations) / every))
+    stated = not np.isnan(fit.p_value)
+    terms = []
+    for kind, (values, size) in kinds.items():
+        added = added_terms(
+            rows.reshape(samples.equations, -1),
+            residual.ravel(),
+            fit.whitening,
+            values,
+            floor=1.0 if stated else np.finfo(float).tiny,
+            known_noise=stated,
+        )
+        if added is not None:
+            terms.append(_term(kind, added, size, deviations))
+    worst = min(terms, key=lambda t: t.p_value, default=None)
+    seen = worst is not None and worst.p_value < SIGNIFICANCE / len(terms)
+    large = worst is not None and worst.misfit.max() > NEGLIGIBLE * samples.largest_torque
+    return BesideChain(tuple(terms), worst.said if worst is not None and seen and large else "")
+
+
+def _term(kind: str, added: AddedTerms, reach: Array, deviations: float) -> TermBeside:
+    allowed = WIDER * quantile(deviations, added.freedom)
+    values, vectors = np.linalg.eigh((added.more + added.more.T) / 2.0)
+    root = allowed * vectors * np.sqrt(np.maximum(values, 0.0))
+    joints = np.arange(len(reach))
+    said = "; ".join(_constants(added)) if kind == CONSTANT else in_words(added, joints)
+    return TermBeside(
+        kind, added.change, root, added.largest(allowed, reach), added.p_value, added.misfit, said
+    )
+
+
+def _constants(added: AddedTerms) -> Iterator[str]:
+    for j in added.outstanding():
+        size, error = added.terms[j, 0], added.errors[j, 0]
+        yield (
+            f"a constant torque of {size:+.3g} N m on joint {j + 1} (standard error {error:.1g})"
+        )

@@ -1,0 +1,167 @@
+"""Symmetries identified from static samples through a rigid chain: few samples, many joints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from isotorque.learning.learners.rigid.planning.poses_needed import fewest_poses
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain
+from isotorque.learning.relations.examined_fit import LARGEST_ERROR
+from isotorque.learning.relations.learned_symmetries import (
+    Knowledge,
+    LearnedRelation,
+    LearnedSymmetries,
+    nothing_learned,
+)
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.learning.relations.potential.samples_needed import samples_needed
+from isotorque.learning.relations.static_samples import static_samples
+from isotorque.learning.statistics.lack_of_fit import LackOfFit
+from isotorque.learning.statistics.poses import by_pose
+
+Array = NDArray[np.float64]
+
+METHOD = "rigid chain"
+STARTS = 60
+SAME_TORQUE = 0.01
+"""Torques that differ by less, relative to the largest, are the same."""
+MOST_POSES = 500
+"""A chain is fitted to no more poses, evenly taken."""
+
+
+def identify_by_chain(
+    q: ArrayLike,
+    tau: ArrayLike,
+    *,
+    noise: MeasurementNoise | None = None,
+    parents: Sequence[int] | None = None,
+) -> LearnedSymmetries:
+    """Find the symmetry group of the rigid chain behind static samples.
+
+    Parameters
+    ----------
+    q : (N, n) array_like
+        Configurations at rest [rad].
+    tau : (N, n) array_like
+        Torques that held them [N m].
+    noise : MeasurementNoise, optional
+        Noise levels where known; estimated otherwise.
+    parents : sequence of int, optional
+        Joint that carries each joint, -1 for the base; in series by default.
+
+    Returns
+    -------
+    LearnedSymmetries
+        Only the identity where no chain is accepted, where the samples show torques beside it, or
+        where a relation of gravity could be wrong by 5 % of the largest torque: ``missing`` says
+        which.
+
+    Notes
+    -----
+    Rows of one pose count as one sample. Where one potential for all torques of any arm needs
+    ``(3^n - 1) / n`` samples (`identify_by_waves`), a chain needs four to eight, as it has 4 n - 1
+    numbers. Relations are those of the snapped chain; their bounds are of the torque that was
+    measured (`chain_symmetries`).
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(1)
+    >>> q = rng.uniform(-3, 3, (6, 2))
+    >>> lower = 6.1 * np.cos(q[:, 0] + q[:, 1])
+    >>> tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
+    >>> found = identify_by_chain(q, tau)
+    >>> found.order, found.method
+    (8, 'rigid chain')
+    >>> identify_by_chain(q[:3], tau[:3]).missing
+    '1 more poses: 3 different ones were given, 4 are needed'
+    """
+    configurations, torques = static_samples(q, tau)
+    n = configurations.shape[1]
+    if not torques.any():
+        return nothing_learned(n, "samples with a torque", METHOD)
+    _, configurations, torques = by_pose(configurations, torques)
+    given, needed = _different_torques(torques), fewest_poses(n, parents)
+    if given < min(needed, len(torques)):
+        missing = (
+            f"{needed - given} more torques: {given} different |torque| given, {needed} are needed "
+            "(poses that symmetries relate say the same)"
+        )
+        return nothing_learned(n, missing, METHOD)
+    last = len(configurations) - 1
+    taken = np.unique(np.linspace(0, last, MOST_POSES).round().astype(int))
+    learner = RigidChain(
+        parents,
+        torque_noise=None if noise is None else noise.torque,
+        angle_noise=0.0 if noise is None else noise.angle,
+        max_starts=STARTS,
+    ).fit(configurations[taken], torques[taken])
+    return relations_of_chain(learner)
+
+
+def _different_torques(torques: Array) -> int:
+    """Number of different |torque|, none within `SAME_TORQUE` of another at every joint.
+
+    Recordings of the paper's kind hold many configurations of few torques, which the arm's
+    symmetries map to each other: they fill equations without telling a false chain from the true.
+    """
+    sizes = np.abs(torques)
+    near = SAME_TORQUE * float(sizes.max())
+    left, count = sizes, 0
+    while len(left):
+        left = left[(np.abs(left - left[0]) > near).any(axis=1)]
+        count += 1
+    return count
+
+
+def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
+    """The relations of a chain that was fitted to samples, if they can be claimed.
+
+    Parameters
+    ----------
+    learner : RigidChain
+        Fitted, accepted or not.
+
+    Returns
+    -------
+    LearnedSymmetries
+        As of `identify_by_chain`.
+    """
+    samples = learner.fit_.samples
+    if not learner.verdict_.accepted:
+        return nothing_learned(samples.n, learner.remark_, METHOD)
+    found = learner.symmetries()
+    if found.beside.said:
+        lack = _lack_of_fit(found.beside)
+        missing = f"an arm whose torque is rigid gravity: there is {lack.said}"
+        return nothing_learned(samples.n, missing, METHOD, lack=lack)
+    excess = float(found.gravity_bounds.max()) / (LARGEST_ERROR * samples.largest_torque)
+    if excess > 1.0:
+        missing = (
+            f"{samples_needed(len(samples.q), excess)}: relations could still be wrong by "
+            f"{100.0 * LARGEST_ERROR * excess:.2g} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
+            "are allowed"
+        )
+        return nothing_learned(samples.n, missing, METHOD)
+    relations = tuple(
+        LearnedRelation(
+            relation,
+            Knowledge.IDENTIFIED,
+            0,
+            np.full(len(relation.basis), np.nan),
+            found.snapped.p_value,
+            snapped=bool(found.snapped.hypotheses),
+        )
+        for relation in found.group
+    )
+    return LearnedSymmetries(found.group, relations, None, METHOD, chain=learner)
+
+
+def _lack_of_fit(beside: BesideChain) -> LackOfFit:
+    """What the samples show beside a chain."""
+    worst = min(beside.terms, key=lambda term: term.p_value)
+    none = np.zeros(len(worst.misfit))
+    return LackOfFit(np.array([], dtype=int), none, none, (), worst.misfit, beside.said)

@@ -1,0 +1,155 @@
+"""Further terms of single joints' torques, tried beside a model that was fitted to samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from isotorque.learning.relations.potential.potential_fit import tail_probability
+
+Array = NDArray[np.float64]
+
+SPARE = 2
+"""Degrees of freedom that terms must leave, to know the noise."""
+DEPENDENT = 1e-6
+"""Directions of the terms' columns that the model holds up to this share are its own."""
+
+
+@dataclass(frozen=True, eq=False)
+class AddedTerms:
+    """What samples say of further terms, w of them at each of k joints.
+
+    Attributes
+    ----------
+    terms, errors : (k, w) arrays
+        Estimates and standard errors.
+    change : (p,) array
+        Of the model's parameters, if the terms are there.
+    more : (p, p) array
+        Covariance that the terms add to theirs.
+    freedom : float
+        Degrees of freedom of the noise level of each joint; infinite where noise is known.
+    p_value : float
+        Chance of such an improvement, or a larger one, if the terms are not there.
+    misfit : (k,) array
+        Root mean square over the samples of what they explain better [N m].
+    """
+
+    terms: Array
+    errors: Array
+    change: Array
+    more: Array
+    freedom: float
+    p_value: float
+    misfit: Array
+
+    def largest(self, deviations: float, reach: Array) -> Array:
+        """Largest torque (k,) [N m] so many standard errors allow, functions as large as reach."""
+        limit = np.abs(self.terms) + deviations * self.errors
+        return np.asarray(np.linalg.norm(limit, axis=1) * reach)
+
+    def outstanding(self) -> NDArray[np.intp]:
+        """Joints whose terms stand out, at least the one where they do most."""
+        ratio = np.linalg.norm(self.terms / np.maximum(self.errors, 1e-300), axis=1)
+        told = np.flatnonzero(ratio >= max(3.0, 0.2 * float(ratio.max(initial=0.0))))
+        return told if len(told) else np.array([int(ratio.argmax())])
+
+
+def added_terms(
+    design: Array,
+    residual: Array,
+    whitening: Array,
+    values: Array,
+    *,
+    floor: float,
+    known_noise: bool,
+) -> AddedTerms | None:
+    """Try terms on every joint beside a model.
+
+    Parameters
+    ----------
+    design : (N k, p) array
+        Derivatives of the whitened torques by the model's parameters, of full rank.
+    residual : (N k,) array
+        What the model leaves, whitened.
+    whitening : (N, k, k) array
+        What torques are multiplied with.
+    values : (N, k, w) array
+        Functions of the terms at the samples.
+    floor : float
+        Least mean square of a residual: what arithmetic leaves, or 1 for known noise (noise that
+        was given too small is no further term).
+    known_noise : bool
+        Whether the noise level was given; otherwise every joint has one of its own.
+
+    Returns
+    -------
+    AddedTerms or None
+        None where the samples are too few.
+    """
+    count, k, width = values.shape
+    if count * k < design.shape[1] + k * width + SPARE:
+        return None
+    span, root = np.linalg.qr(design)
+    size = np.sqrt(np.mean(values**2, axis=0)) + 1e-300  # (k, width)
+    columns = np.einsum("Nij,Njw->Nijw", whitening, values / size)
+    columns = columns.reshape(count * k, k * width)
+    held = span.T @ columns
+    beyond = columns - span @ held
+    again = span.T @ beyond
+    beyond, held = beyond - span @ again, held + again
+    left, singular, right = np.linalg.svd(beyond, full_matrices=False)
+    whole = np.linalg.norm(columns, axis=0).max()
+    seen = singular > DEPENDENT * whole
+    left, singular, right = left[:, seen], singular[seen], right[seen]
+    coordinates = left.T @ residual
+    rest = residual - left @ coordinates
+    lever = (span**2).sum(axis=1) + (left**2).sum(axis=1)
+    degrees = int(seen.sum())
+    freedom = count * k - span.shape[1] - degrees
+    own = np.maximum(count - lever.reshape(count, k).sum(axis=0), 1e-9)
+    level = (rest.reshape(count, k) ** 2).sum(axis=0) / own
+    if own.min() < SPARE:  # too few to tell joints apart
+        level = np.full(k, float(rest @ rest) / max(1, freedom))
+    level = np.maximum(level, floor)
+    weight = np.tile(level, count)
+    spread = (left * weight[:, None]).T @ left  # covariance of the coordinates
+    own_freedom = np.inf if known_noise else float(freedom) / k
+    statistic = float(coordinates @ np.linalg.solve(spread, coordinates)) if degrees else 0.0
+    back = right.T / singular
+    terms = back @ coordinates
+    covariance = back @ spread @ back.T
+    effect = np.linalg.solve(root, held)  # what one unit of a term takes from the parameters
+    torque = np.linalg.solve(whitening, (left @ coordinates).reshape(count, k, 1))[:, :, 0]
+    return AddedTerms(
+        terms.reshape(k, width) / size,
+        np.sqrt(np.maximum(np.diag(covariance), 0.0)).reshape(k, width) / size,
+        -effect @ terms,
+        effect @ covariance @ effect.T,
+        own_freedom,
+        tail_probability(statistic, degrees, own_freedom),
+        np.sqrt(np.mean(torque**2, axis=0)),
+    )
+
+
+def springs(q: Array) -> Array:
+    """Torques that grow with the angle of their own joint, (N, k, 1) at q (N, k) [rad]."""
+    return q[:, :, None]
+
+
+def second_harmonics(q: Array) -> Array:
+    """Torques of twice the angle of their own joint (cables, bent links), (N, k, 2)."""
+    turns = 2.0 * q
+    return np.stack([np.cos(turns), np.sin(turns)], axis=2)
+
+
+def in_words(found: AddedTerms, joints: NDArray[np.intp]) -> str:
+    """Say the terms that stand out: springs of one number per joint, cables of two."""
+    told, terms = found.outstanding(), found.terms
+    if terms.shape[1] == 1:
+        sizes = ", ".join(f"{terms[j, 0]:+.3g} N m/rad on joint {joints[j] + 1}" for j in told)
+        return f"a torque that grows with its angle (a spring), {sizes}"
+    sizes = ", ".join(f"{np.linalg.norm(terms[j]):.3g} N m on joint {joints[j] + 1}" for j in told)
+    return f"a torque of twice the angle (a cable, a bent link), {sizes}"
