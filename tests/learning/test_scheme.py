@@ -32,7 +32,9 @@ def confirmed(monkeypatch, orders, *, passed, n_min=8, confirmations=2, missing=
     monkeypatch.setattr(
         scheme_module,
         "learn_relations",
-        lambda *_: SimpleNamespace(order=next(left), missing=missing, decided=missing is None),
+        lambda *_, **__: SimpleNamespace(
+            order=next(left), missing=missing, decided=missing is None
+        ),
     )
     assert len(list(scheme._confirm())) == len(orders)
     return scheme.gate_passed

@@ -11,6 +11,7 @@ from isotorque.learning.learners.rigid.planning.poses_needed import fewest_poses
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain
 from isotorque.learning.relations.examined_fit import LARGEST_ERROR
+from isotorque.learning.relations.identification.unfelt_levers import unfelt_lever
 from isotorque.learning.relations.learned_symmetries import (
     Knowledge,
     LearnedRelation,
@@ -133,6 +134,13 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
     samples = learner.fit_.samples
     if not learner.verdict_.accepted:
         return nothing_learned(samples.n, learner.remark_, METHOD)
+    joint = unfelt_lever(learner.fit_)
+    if joint is not None:
+        missing = (
+            f"torque on joint {joint + 1}: it held none in all samples, and what it carries may "
+            "have been balanced there alone"
+        )
+        return nothing_learned(samples.n, missing, METHOD)
     found = learner.symmetries()
     if found.beside.said:
         lack = _lack_of_fit(found.beside)

@@ -104,7 +104,7 @@ def test_no_proposals_are_refused():
 
 def discovered(confirm, seed=1):
     """A discovery that is too short for its noise, and some chosen torques."""
-    noise = SensorNoise(np.deg2rad(0.3))
+    noise = SensorNoise(np.deg2rad(0.4))
     arm = SimulatedArm(load_robot("2r"), noise=noise, rng=np.random.default_rng(seed + 50))
     settings = SchemeSettings(
         confirm=confirm, max_targets=2, discovery=DiscoverySettings(babbling=20)

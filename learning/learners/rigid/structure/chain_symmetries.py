@@ -71,7 +71,7 @@ class ChainSymmetries:
         """What is claimed, in words."""
         count = len(self.snapped.hypotheses)
         if not count:
-            return "true of the fitted chain; nothing was snapped" + self._object
+            return "true of the fitted chain; nothing was snapped" + self._object + self._beside
         text = (
             "true of the snapped chain, which the data do not contradict, "
             f"p = {self.snapped.p_value:.2g} ({count} hypotheses)"
@@ -79,7 +79,14 @@ class ChainSymmetries:
         lever = self.snapped.smallest_visible_lever
         if np.isfinite(lever) and lever > 0:
             text += f"; smallest lever that would have been seen everywhere: {lever:.2g} N m"
-        return text + self._object
+        return text + self._object + self._beside
+
+    @property
+    def _beside(self) -> str:
+        """What the samples show beside the chain."""
+        if not self.beside.said:
+            return ""
+        return f"; but the samples show {self.beside.said}: of gravity alone they may be true"
 
     @property
     def _object(self) -> str:

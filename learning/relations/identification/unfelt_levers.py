@@ -1,0 +1,98 @@
+"""Levers of silent joints that no sample would have felt."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
+
+from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
+from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
+from isotorque.learning.learners.rigid.planning.information import probe_poses
+from isotorque.symbolic.common.single_thread import single_thread
+
+Array = NDArray[np.float64]
+
+SILENT = 1e-9
+"""A joint is silent if its torque stays below this share of the largest,"""
+SILENT_NOISE = 2.0
+"""or below so many times the noise (both RMS)."""
+UNFELT = 0.05
+"""A lever is not felt whose torque at the samples is below this share of that elsewhere (RMS)."""
+STARTS = 6
+MOST_SAMPLES = 60
+SMALL = 0.05
+"""Torques of a lever of 1 N m below this everywhere mean nothing [N m]."""
+
+
+@single_thread()
+def unfelt_lever(fit: ChainFit) -> int | None:
+    """Find a joint that held no torque, though its link may have a lever that samples do not feel.
+
+    Parameters
+    ----------
+    fit : ChainFit
+        An accepted fit.
+
+    Returns
+    -------
+    int or None
+        The joint, from 0.
+
+    Notes
+    -----
+    A link without lever has an axis of any direction, so its chain is found with some random one,
+    with which every lever would have been felt. But poses may be special: a forearm that always
+    hangs needs no torque. So for joints at the end of the chain that held no torque, axes are
+    looked for with which a lever is not felt at the samples, and is elsewhere.
+    """
+    silent = _silent_at_end(fit)
+    samples = fit.samples
+    last = len(samples.q) - 1
+    taken = np.unique(np.linspace(0, last, MOST_SAMPLES).round().astype(int))
+    for joint in silent:
+        free = [j for j in silent if j <= joint]
+        if _share_felt(fit.chain, joint, free, samples.q[taken]) < UNFELT:
+            return int(joint)
+    return None
+
+
+def _silent_at_end(fit: ChainFit) -> list[int]:
+    """Joints without torque that carry none with torque."""
+    samples = fit.samples
+    size = np.sqrt(np.mean(samples.torque**2, axis=0))
+    limit = np.maximum(SILENT * samples.largest_torque, SILENT_NOISE * samples.torque_noise)
+    quiet = size <= limit
+    parents = fit.chain.parents
+    for joint in range(len(parents) - 1, -1, -1):
+        if not quiet[joint] and parents[joint] >= 0:
+            quiet[parents[joint]] = False
+    return [int(j) for j in np.flatnonzero(quiet)]
+
+
+def _share_felt(chain: ChainParameters, joint: int, free: list[int], q: Array) -> float:
+    """Least torque of a lever at the samples, relative to that elsewhere, whatever the axes."""
+    probes = probe_poses(chain.n)
+    levers = np.zeros((chain.n, 2))
+
+    def share(x: Array) -> Array:
+        rotations = chain.rotations.copy()
+        rotations[free] = Rotation.from_rotvec(x[1:].reshape(-1, 3)).as_matrix()
+        levers[joint] = np.cos(x[0]), np.sin(x[0])
+        one = ChainParameters.of(rotations, levers, parents=chain.parents)
+        elsewhere = float(np.sqrt(np.mean(np.sum(one.torque(probes) ** 2, axis=1))))
+        if elsewhere < SMALL:
+            return np.ones(q.size)
+        return np.asarray(one.torque(q).ravel() / (elsewhere * np.sqrt(len(q))))
+
+    rng = np.random.default_rng(0)
+    least = 1.0
+    for _ in range(STARTS):
+        axes = Rotation.random(len(free), random_state=rng).as_rotvec().ravel()
+        start = np.concatenate([rng.uniform(-np.pi, np.pi, 1), axes])
+        found = least_squares(share, start, max_nfev=40)
+        least = min(least, float(np.linalg.norm(found.fun)))
+        if least < UNFELT:
+            break
+    return least
