@@ -19,7 +19,7 @@ DEPENDENT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class AddedTerms:
-    """What samples say of further terms, w of them at each of k joints.
+    """Further terms, w of them at each of k joints, as samples show them.
 
     Attributes
     ----------

@@ -19,6 +19,7 @@ from isotorque.learning.statistics.added_terms import (
     second_harmonics,
     springs,
 )
+from isotorque.learning.statistics.constant_torques import OR_FRICTION
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]
@@ -78,7 +79,7 @@ class TermBeside:
 
 @dataclass(frozen=True, eq=False)
 class BesideChain:
-    """What samples say of torques beside a fitted chain.
+    """Torques beside a fitted chain, as samples show them.
 
     Attributes
     ----------
@@ -147,7 +148,9 @@ def _term(kind: str, added: AddedTerms, reach: Array, deviations: float) -> Term
     values, vectors = np.linalg.eigh((added.more + added.more.T) / 2.0)
     root = allowed * vectors * np.sqrt(np.maximum(values, 0.0))
     joints = np.arange(len(reach))
-    said = "; ".join(_constants(added)) if kind == CONSTANT else in_words(added, joints)
+    said = in_words(added, joints)
+    if kind == CONSTANT:
+        said = "; ".join(_constants(added)) + OR_FRICTION
     return TermBeside(
         kind, added.change, root, added.largest(allowed, reach), added.p_value, added.misfit, said
     )
