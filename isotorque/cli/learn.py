@@ -98,6 +98,26 @@ def learn(
             show_default=False,
         ),
     ] = None,
+    loaded: Annotated[
+        Path | None,
+        typer.Option(
+            "--loaded",
+            metavar="FILE.csv",
+            help="With --unknown-gains and --known-load: a second recording, in any poses, with a"
+            " known load on a link.",
+            show_default=False,
+        ),
+    ] = None,
+    known_load: Annotated[
+        str | None,
+        typer.Option(
+            "--known-load",
+            metavar="JOINT=NM",
+            help="With --loaded: the joint whose link carries the load, and the load's weight times"
+            " the distance of its centre from that joint's axis [N m]; fixes the common factor.",
+            show_default=False,
+        ),
+    ] = None,
     n_min: NMin = 2,
     learn_anyway: LearnAnyway = False,
     settings: Chosen = None,
@@ -131,7 +151,8 @@ def learn(
 
     given = _given(context)
     if robot is not None:
-        _refuse(given, ("unknown_gains", "known_gain"), "a ROBOT")
+        alone = ("unknown_gains", "known_gain", "loaded", "known_load")
+        _refuse(given, alone, "a ROBOT")
     else:
         return _learn_from_data_alone(given, out, json=json, quiet=quiet)
     load(as_recorded(robot, out), quiet)
@@ -177,6 +198,8 @@ def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quie
         given.get("learner") or RIGID,
         given.get("unknown_gains", False),
         tuple(given.get("known_gain") or ()),
+        given.get("loaded"),
+        given.get("known_load"),
     )
     found = chain_from_data(options)
     document = found.document(found.save(out))
@@ -241,7 +264,7 @@ def _print_gains(group: dict[str, Any]) -> None:
     elif len(group["gains"]) == 1:
         print(f"gain of {next(iter(group['gains']))}: not determined by any other joint")
     else:
-        print(f"gains: {listed}; their common factor is not known (--known-gain JOINT=GAIN)")
+        print(f"gains: {listed}; their common factor is not known (--known-gain, --known-load)")
 
 
 def _chain(document: dict[str, Any]) -> str:

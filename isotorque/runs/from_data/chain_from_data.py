@@ -16,6 +16,7 @@ from isotorque.learning.files.csv_samples import StaticSamples, joint_names_of, 
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.fitting.gains import GainGroup
+from isotorque.learning.learners.rigid.fitting.known_load import gain_from_load
 from isotorque.learning.learners.rigid.misread_samples import other_reading
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
@@ -53,6 +54,10 @@ class ChainDataOptions:
         Whether torques are in units of their own at every joint.
     known_gains : tuple of str
         ``JOINT=GAIN`` of those joints whose units are known.
+    loaded : Path or None
+        A second recording, with a known load on the link of a joint.
+    known_load : str or None
+        ``JOINT=NM``: that joint, and weight of the load times its distance from the axis.
     """
 
     file: Path
@@ -62,8 +67,17 @@ class ChainDataOptions:
     learner: str = RIGID
     unknown_gains: bool = False
     known_gains: tuple[str, ...] = ()
+    loaded: Path | None = None
+    known_load: str | None = None
 
     def __post_init__(self) -> None:
+        for option, value, other in (
+            ("--loaded", self.loaded, self.known_load),
+            ("--known-load", self.known_load, self.loaded),
+        ):
+            if value is not None and (other is None or not self.unknown_gains):
+                accepted = "--loaded FILE.csv, --known-load JOINT=NM and --unknown-gains together"
+                raise InputError("command line", option, str(value), accepted)
         if self.known_gains and not self.unknown_gains:
             value, accepted = " ".join(self.known_gains), "this together with --unknown-gains"
             raise InputError("command line", "--known-gain", value, accepted)
@@ -200,7 +214,9 @@ class ChainFromData:
         return np.asarray(np.random.default_rng(0).uniform(low, high, (count, len(low))))
 
 
-def gains_by_joint(texts: Sequence[str], joint_names: Sequence[str]) -> list[float | None]:
+def gains_by_joint(
+    texts: Sequence[str], joint_names: Sequence[str], option: str = "--known-gain"
+) -> list[float | None]:
     """Known gains in the order of the joints, None for the others.
 
     Raises
@@ -222,11 +238,12 @@ def gains_by_joint(texts: Sequence[str], joint_names: Sequence[str]) -> list[flo
         except ValueError:
             gain = 0.0
         if name not in joint_names or gain == 0.0 or not np.isfinite(gain):
-            accepted = f"JOINT=GAIN, a number other than 0, one of {', '.join(joint_names)}"
-            raise InputError("command line", "--known-gain", text, accepted)
+            form = "JOINT=NM" if option == "--known-load" else "JOINT=GAIN"
+            accepted = f"{form}, a number other than 0, one of {', '.join(joint_names)}"
+            raise InputError("command line", option, text, accepted)
         place = list(joint_names).index(name)
         if gains[place] is not None:
-            raise InputError("command line", "--known-gain", text, f"one gain for {name}")
+            raise InputError("command line", option, text, f"one gain for {name}")
         gains[place] = gain
     return gains
 
@@ -305,6 +322,9 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
         ).fit(q, tau)
         return ChainFromData(options, names, samples, process, None)
 
+    known = gains_by_joint(options.known_gains, names) if options.unknown_gains else None
+    load = _known_load(options, names)
+
     def fitted(offsets: bool) -> RigidChain:
         return RigidChain(
             torque_noise=(options.torque_noise or 0.0) if stated else None,
@@ -315,10 +335,22 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
             random_state=options.seed,
         ).fit(q, tau)
 
-    known = gains_by_joint(options.known_gains, names) if options.unknown_gains else None
     plain = learner = fitted(False)
     if learner.verdict_ not in (FitStatus.ROUNDING, FitStatus.CHI_SQUARE, FitStatus.TOO_FEW):
         learner = fitted(True)
+    if learner.verdict_.accepted and load is not None and known is not None:
+        joint, moment, loaded = load
+        found = gain_from_load(
+            learner.fit_,
+            loaded.q,
+            loaded.tau,
+            joint,
+            moment,
+            str(options.loaded),
+            learner.errors_.replicas,
+        )
+        known[joint] = found.gain
+        learner = fitted(bool(learner.unknown_offsets))
     if learner.verdict_.accepted:
         return ChainFromData(options, names, samples, learner, learner.symmetries())
     reading = None
@@ -333,3 +365,18 @@ def _refuse_constant_torques(file: Path, samples: StaticSamples) -> None:
     if moved and not np.ptp(samples.tau, axis=0).any() and samples.tau.any():
         found = f"the same in all {len(samples.q)} rows, though angles differ"
         raise InputError(str(file), "torques", found, "torques measured in each of the poses")
+
+
+def _known_load(
+    options: ChainDataOptions, names: tuple[str, ...]
+) -> tuple[int, float, StaticSamples] | None:
+    """Number of the joint, moment of the load [N m] and the recording with it."""
+    if options.known_load is None or options.loaded is None:
+        return None
+    moments = gains_by_joint([options.known_load], names, "--known-load")
+    joint = next(j for j, moment in enumerate(moments) if moment is not None)
+    moment = moments[joint] or 0.0
+    if moment < 0 or gains_by_joint(options.known_gains, names)[joint] is not None:
+        accepted = "a positive moment, of a joint whose gain is not given"
+        raise InputError("command line", "--known-load", options.known_load, accepted)
+    return joint, moment, read_csv(options.loaded, names)

@@ -185,13 +185,17 @@ class ChainRecursion:
             _total((g, t), (b,)) for g, t, b in zip(self.gains, torques, self.biases, strict=True)
         ]
         body = code.needed_for(results)
-        if body:
+        turned = [j for j in cos if any(f" = {x}[{j}];" in line for line in body for x in "cs")]
+        if turned:
             tables.add(shift, self.shifts)
-            n = self.joints
-            turns = [f"for (j = 0; j < {n}; j++)", f"    turn(q[j] + {shift}[j], c + j, s + j);"]
+            n, first, end = self.joints, turned[0], turned[-1] + 1  # others: gravity sees no angle
+            turns = [
+                f"for (j = {first}; j < {end}; j++)",
+                f"    turn(q[j] + {shift}[j], c + j, s + j);",
+            ]
             body[:0] = [f"double c[{n}], s[{n}];", "int j;", *turns]
         else:
-            body = ["(void)q;"]
+            body = ["(void)q;", *body]
         body += [f"tau[{j}] = {result};" for j, result in enumerate(results)]
         text = "\n".join(f"    {line}" for line in body)
         head = f"{'static ' if static else ''}void {name}(const double *q, double *tau)"

@@ -103,15 +103,42 @@ def test_what_is_no_rigid_chain_is_not_a_model(change, reading, tmp_path, capsys
         (("--unknown-gains", "--known-gain", "elbow=1", "--known-gain", "elbow=2"), "one gain"),
         (("--unknown-gains", "--learner", "rigid-chain+gaussian-process"), "gains as known"),
         (("--learner", "rigid-chain+gaussian-process", "--angle-noise", "0.1"), "exact"),
+        (("--unknown-gains", "--known-load", "hand=2"), "--loaded FILE.csv"),
+        (("--unknown-gains", "--loaded", "poses.csv"), "--known-load JOINT=NM"),
+        (("--known-load", "hand=2", "--loaded", "poses.csv"), "--unknown-gains together"),
+        (("--unknown-gains", "--known-load", "nose=2", "--loaded", "poses.csv"), "base, shoulder"),
+        (("--unknown-gains", "--known-load", "hand=-2", "--loaded", "poses.csv"), "positive"),
     ],
 )
-def test_gains_that_cannot_be_used_are_one_line(options, words, tmp_path, capsys):
+def test_gains_that_cannot_be_used_are_one_line(options, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
     recording(tmp_path / "poses.csv", 8)
     data = ("--data", tmp_path / "poses.csv", "--out", tmp_path / "x")
     assert isotorque("learn", *data, *options) == 2
     error = capsys.readouterr().err.strip()
     assert words in error
     assert len(error.splitlines()) == 1
+
+
+def test_a_known_load_fixes_the_common_gain(tmp_path, capsys):
+    """Motor currents of the panda, then 2 kg held 0.1 m from the axis of its hand."""
+    gains = np.array([0.7, 1.9, 1.1, 0.6, 1.4, 2.0, 0.9])
+    rng = np.random.default_rng(2)
+    files = tmp_path / "empty.csv", tmp_path / "loaded.csv"
+    for file, load in zip(files, ((), "2,0,0.1,0.05@panda_link7"), strict=True):
+        q = rng.uniform(-2.5, 2.5, (14, 7))
+        torque = GravityModel(load_robot("panda", payload=load)).torque(q)
+        write_csv(file, StaticSamples(q, gains * torque), JOINTS)
+    common = ("--data", files[0], "--out", tmp_path / "out", "--unknown-gains", "--json")
+    assert isotorque("learn", *common) == 0
+    (alone,) = (g for g in json.loads(capsys.readouterr().out)["gains"] if len(g["gains"]) > 1)
+    assert not alone["common_factor_known"]
+    load = ("--loaded", files[1], "--known-load", f"hand={2 * 9.81 * 0.1}")
+    assert isotorque("learn", *common, *load) == 0
+    (found,) = (g for g in json.loads(capsys.readouterr().out)["gains"] if len(g["gains"]) > 1)
+    assert found["common_factor_known"]
+    for name, gain in found["gains"].items():
+        assert gain == pytest.approx(gains[JOINTS.index(name)], rel=1e-4)
 
 
 @pytest.mark.parametrize(
