@@ -1,10 +1,10 @@
-"""The rigid chain measured: poses needed, errors, gains, relations, calibration, times.
+"""The rigid chain measured: poses needed, errors, gains, calibration, times.
 
 Usage: python -m benchmarks.chain [--seeds 20] [--random 1000] [--write]
 
 Poses are uniform over the torus (over the joint limits where said), noise is normal. Medians over
 the seeds, the worst in brackets. Times are processor times. With --write the table goes into
-docs/rigid-chain.md. A quarter of an hour.
+docs/rigid-chain.md. A quarter of an hour. Relations: benchmarks.chain_relations.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import Robot, load_robot
-from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 from tests.learning.learners.rigid.random_chains import KINDS, random_chain, random_poses
 
 Array = NDArray[np.float64]
@@ -86,8 +85,6 @@ def measured(seeds: int, chains: int) -> Iterator[Row]:
     yield panda_within_limits(seeds)
     for name, poses in (("ur5", 20), ("ur5", 40), ("panda", 20), ("panda", 40)):
         yield beside_known_kinematics(name, poses, seeds)
-    for name in ("3r", "ur5", "panda", *EXAMPLE_ROBOTS):
-        yield from relations(name, seeds)
     for name, poses in (("2r", 20), ("3r", 20), ("ur5", 20), ("ur5", 40), ("panda", 20)):
         yield calibration(name, poses, seeds)
     for name, poses in (("2r", 20), ("ur5", 20), ("ur5", 40), ("panda", 20)):
@@ -204,40 +201,6 @@ def beside_known_kinematics(name: str, poses: int, seeds: int) -> Row:
         f"{np.median(chain):.3g} N m, {ratio:.2f} times",
         "2 times",
         ratio <= 2.0,
-    )
-
-
-def relations(name: str, seeds: int) -> Iterator[Row]:
-    """Order of the group and validity of the bounds from 30 poses in noise."""
-    robot = _arm(name)
-    if robot is None:
-        return
-    gravity = GravityModel(robot)
-    exact = primary_symmetries(gravity.potential).order
-    test = random_poses(np.random.default_rng(99), 500, gravity.n)
-    truth = gravity.torque(test)
-    orders, right, bounds = [], 0, []
-    for seed in range(seeds):
-        rng = np.random.default_rng(seed)
-        q = random_poses(rng, 30, gravity.n)
-        torque = gravity.torque(q) + NOISE * rng.normal(size=q.shape)
-        learner = RigidChain(torque_noise=NOISE, random_state=seed).fit(q, torque)
-        group = learner.symmetries().group
-        errors = [
-            np.abs(gravity.torque(r.configuration(test)) - r.Y * truth).max(axis=0) - r.bound
-            for r in group
-        ]
-        right += bool(np.max(errors) <= 1e-12)
-        orders.append(group.order)
-        bounds.append(max(r.bound.max() for r in group))
-    least = float(np.mean(np.array(orders) >= exact))
-    yield Row(
-        f"{name}: 30 poses, {NOISE} N m: seeds in which every relation keeps its bound; order at "
-        f"least the exact group's ({exact})",
-        f"{right} of {seeds} (bounds {np.median(bounds):.2g} N m); {100 * least:.0f} %, median "
-        f"order {np.median(orders):.0f}",
-        "99 %; 90 %",
-        bool(right >= 0.99 * seeds and least >= 0.9),
     )
 
 

@@ -57,7 +57,9 @@ STEP = 0.02
 PROBES = 500
 KEPT, AT_LEAST = 0.99, 0.9
 MOTIONS = 60, 30
-MOST_MOTIONS, EVERY = 400, 5
+MOST_MOTIONS, EVERY = 400, 15
+FOR_GOOD = 3
+"""Looks in a row that find all relations."""
 
 
 @dataclass(frozen=True)
@@ -157,7 +159,7 @@ def from_poses(name: str, poses: int, seeds: range) -> Row:
 
 
 def by_itself(seeds: range) -> Row:
-    """Motions of a discovery in open loop until all relations of the 3R are known, and stay so."""
+    """Motions of a discovery in open loop until all relations of the 3R are known for good."""
     robot = load_robot("3r")
     gravity = arm("3r")
     assert gravity is not None
@@ -173,12 +175,12 @@ def by_itself(seeds: range) -> Row:
                 found = learn_relations(*scheme.samples)
                 false += sum(relation not in group for relation in found.group)
                 known.append(found.order == group.order)
-            if motions >= MOST_MOTIONS:
+            if motions >= MOST_MOTIONS or (len(known) >= FOR_GOOD and all(known[-FOR_GOOD:])):
                 break
         missing = [i for i, right in enumerate(known) if not right]
-        last = EVERY * (missing[-1] + 2) if missing else EVERY
-        needed.append(last if last <= EVERY * len(known) else np.inf)
-        for motions in MOTIONS:  # a discovery that has ended knows what it knew then
+        first = missing[-1] + 1 if missing else 0
+        needed.append(EVERY * (first + 1) if first < len(known) else np.inf)
+        for motions in MOTIONS:  # one that has ended knows what it knew then
             whole[motions] += known[: motions // EVERY][-1]
     counts = ", ".join(f"{whole[m]} of {len(seeds)} after {m} motions" for m in MOTIONS)
     return Row(

@@ -150,4 +150,54 @@ MUTATIONS = (
         ("tests/learning/relations/identification/test_chain_identification.py",),
         "a constant that passes for noise makes relations false",
     ),
+    Mutation(
+        "learning/relations/identification/chain_identification.py",
+        "if not found.beside.complete and",
+        "if False and",
+        (
+            "tests/learning/relations/identification/test_chain_identification.py"
+            "::test_samples_too_few_to_show_a_spring_are_not_enough_unless_they_are_exact",
+        ),
+        "samples too few to show a spring do not prove that there is none",
+    ),
+    Mutation(
+        "learning/relations/identification/chain_identification.py",
+        "if given < min(needed, len(torques)):",
+        "if False:",
+        (
+            "tests/learning/relations/identification/test_identify.py"
+            "::test_many_images_of_few_torques_do_not_make_a_chain",
+        ),
+        "many images of few torques determine no chain",
+    ),
+    Mutation(
+        "learning/relations/identification/chain_identification.py",
+        "if joint is not None:",
+        "if False:",
+        (
+            "tests/isotorque/cli/test_relations.py"
+            "::test_bad_recordings_get_an_answer_that_says_what_is_missing",
+        ),
+        "a link that was balanced at all samples may have a lever",
+    ),
+    Mutation(
+        "learning/relations/identification/identify.py",
+        "if whole.p_value < SIGNIFICANCE:",
+        "if False:",
+        (
+            "tests/learning/relations/identification/test_identify.py"
+            "::test_waves_veto_what_a_chain_takes_for_noise",
+        ),
+        "waves have a veto on the relations of a chain",
+    ),
+    Mutation(
+        "learning/learners/rigid/structure/beside_chain.py",
+        "return np.where(follows, 0.0, 2.0 * self.largest)",
+        "return np.zeros(len(Y))",
+        (
+            "tests/learning/relations/identification/test_chain_identification.py"
+            "::test_bounds_hold_for_torques_that_hide_in_the_noise",
+        ),
+        "bounds allow for torques that hide in the noise",
+    ),
 )

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.planning.poses_needed import fewest_poses
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain
@@ -57,9 +58,9 @@ def identify_by_chain(
     Returns
     -------
     LearnedSymmetries
-        Only the identity where no chain is accepted, where the samples show torques beside it, or
-        where a relation of gravity could be wrong by 5 % of the largest torque: ``missing`` says
-        which.
+        Only the identity where no chain is accepted, where the samples show torques beside it or
+        are too few to show them, or where a relation of gravity could be wrong by 5 % of the
+        largest torque: ``missing`` says which.
 
     Notes
     -----
@@ -146,6 +147,13 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
         lack = _lack_of_fit(found.beside)
         missing = f"an arm whose torque is rigid gravity: there is {lack.said}"
         return nothing_learned(samples.n, missing, METHOD, lack=lack)
+    if not found.beside.complete and learner.verdict_ is not FitStatus.ROUNDING:
+        given, needed = len(samples.q), found.beside.samples_needed
+        missing = (
+            f"{needed - given} more samples: {given} different ones were given, which a chain does "
+            f"not explain exactly; {needed} show whether noise does, or a spring or a cable"
+        )
+        return nothing_learned(samples.n, missing, METHOD)
     excess = float(found.gravity_bounds.max()) / (LARGEST_ERROR * samples.largest_torque)
     if excess > 1.0:
         missing = (

@@ -13,6 +13,7 @@ from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
 from isotorque.learning.learners.rigid.fitting.chain_parameters import raw_directions
 from isotorque.learning.relations.potential.potential_fit import quantile
 from isotorque.learning.statistics.added_terms import (
+    SPARE,
     AddedTerms,
     added_terms,
     in_words,
@@ -31,7 +32,9 @@ NEGLIGIBLE = 1e-6
 WIDER = 1.2
 """Errors of these terms, to first order, are too small by so much where an arm hangs: it then moves
 little, and its chain gives way by more than its derivatives say (measured on the 3R)."""
-CONSTANT, SPRING, CABLE = "constant", "spring", "second harmonic"
+KINDS = CONSTANT, SPRING, CABLE = "constant", "spring", "second harmonic"
+WIDEST = 2
+"""Terms per joint of the widest kind."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,10 +90,18 @@ class BesideChain:
         Of all kinds that there were samples enough for.
     said : str
         What is there beside the chain, with its size; empty where samples show nothing.
+    samples_needed : int
+        Samples from which all kinds are tried.
     """
 
     terms: tuple[TermBeside, ...]
     said: str
+    samples_needed: int
+
+    @property
+    def complete(self) -> bool:
+        """Whether all kinds were tried."""
+        return len(self.terms) == len(KINDS)
 
 
 def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
@@ -140,7 +151,9 @@ def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
     worst = min(terms, key=lambda t: t.p_value, default=None)
     seen = worst is not None and worst.p_value < SIGNIFICANCE / len(terms)
     large = worst is not None and worst.misfit.max() > NEGLIGIBLE * samples.largest_torque
-    return BesideChain(tuple(terms), worst.said if worst is not None and seen and large else "")
+    said = worst.said if worst is not None and seen and large else ""
+    needed = -(-(information.rank + WIDEST * samples.n + SPARE) // samples.n)
+    return BesideChain(tuple(terms), said, needed)
 
 
 def _term(kind: str, added: AddedTerms, reach: Array, deviations: float) -> TermBeside:

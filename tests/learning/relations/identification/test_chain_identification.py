@@ -122,3 +122,21 @@ def test_many_poses_are_thinned():
     found = identify_by_chain(q, tau)
     assert found.order == 8
     assert len(found.chain.fit_.samples.q) == MOST_POSES
+
+
+def test_samples_too_few_to_show_a_spring_are_not_enough_unless_they_are_exact():
+    noise = MeasurementNoise(0.0, 0.05)
+    claimed = []
+    for count in range(5, 12):
+        _, q, tau = recording("2r", count, 0.05, seed=3)
+        found = identify_by_chain(q, tau, noise=noise)
+        claimed.append(found.decided)
+        if found.decided:
+            assert found.chain.symmetries().beside.complete
+        elif "not explain exactly" in found.missing:
+            assert "a spring or a cable" in found.missing
+    assert not claimed[0]
+    assert not claimed[1]
+    assert claimed[-1]
+    _, q, tau = recording("2r", 4)
+    assert identify_by_chain(q, tau).order == 8
