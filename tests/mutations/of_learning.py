@@ -95,28 +95,28 @@ RELATIONS = (
 
 STATISTICS = (
     Mutation(
-        "learning/relations/identification/identify.py",
+        "learning/relations/identification/wave_identification.py",
         "    if lack.failed:\n        _, poses",
         "    if False:\n        _, poses",
         ("tests/learning/statistics/test_lack_of_fit.py::test_a_cable_over_a_pulley_is_told",),
         "nothing is claimed where the samples show what the form has no term for",
     ),
     Mutation(
-        "learning/relations/identification/identify.py",
+        "learning/relations/identification/wave_identification.py",
         "    if excess > 1.0:\n",
         "    if excess > 30.0:\n",
         (f"{IDENTIFY}::test_what_could_be_wrong_by_a_tenth_of_the_torque_is_not_claimed",),
         "relations that could be wrong by much are not claimed",
     ),
     Mutation(
-        "learning/relations/identification/identify.py",
+        "learning/relations/identification/wave_identification.py",
         "SIGNIFICANCE = 1e-4",
         "SIGNIFICANCE = 1e-40",
         (f"{IDENTIFY}::test_few_stable_samples_give_the_whole_group",),
         "a group that the data contradict is not claimed",
     ),
     Mutation(
-        "learning/relations/identification/identify.py",
+        "learning/relations/identification/wave_identification.py",
         "kept = np.flatnonzero((whole.Y[:, lack.offset_joints] > 0.0).all(axis=1))",
         "kept = np.arange(len(whole))",
         (
@@ -177,9 +177,9 @@ STATISTICS = (
         "a relation that samples could not have contradicted is not called consistent",
     ),
     Mutation(
-        "learning/statistics/lack_of_fit.py",
-        "limit = np.linalg.norm(np.abs(per_unit) + deviations * doubt, axis=1)",
-        "limit = np.linalg.norm(np.abs(per_unit), axis=1)",
+        "learning/statistics/added_terms.py",
+        "limit = np.abs(self.terms) + deviations * self.errors",
+        "limit = np.abs(self.terms)",
         (
             "tests/learning/statistics/test_lack_of_fit.py"
             "::test_an_alternative_may_be_as_large_as_the_samples_leave_room_for",

@@ -52,11 +52,12 @@ def test_with_noise_the_stated_bounds_hold(arm, seed, degrees):
         assert (error <= 1.3 * relation.bound + 1e-6 * scale).all()
 
 
+@pytest.mark.parametrize("by", [identify, identify_by_waves])
 @pytest.mark.parametrize(("name", "count"), [("pendulum", 4), ("2r", 6), ("3r", 10)])
-def test_few_stable_samples_give_the_whole_group(name, count):
+def test_few_stable_samples_give_the_whole_group(name, count, by):
     potential, group = known_potential(name)
     for seed in range(10):
-        learned = identify(*stable_samples(potential, np.random.default_rng(seed), count))
+        learned = by(*stable_samples(potential, np.random.default_rng(seed), count))
         assert learned.missing is None
         assert same_group(learned.group, group, 1e-9)
         assert all(r.known is Knowledge.IDENTIFIED for r in learned.relations)
@@ -262,7 +263,7 @@ def test_what_could_be_wrong_by_a_tenth_of_the_torque_is_not_claimed(noise):
         rng = np.random.default_rng(seed)
         q = rng.uniform(-np.pi, np.pi, (14, 2))
         tau = potential.gradient(q) + noise * rng.normal(size=q.shape)
-        learned = identify(q, tau, noise=MeasurementNoise(0.0, noise))
+        learned = identify_by_waves(q, tau, noise=MeasurementNoise(0.0, noise))
         said.append("relations could still be wrong by" in (learned.missing or ""))
         assert learned.order == 1
     assert any(said)
