@@ -17,7 +17,7 @@ from isotorque.cli.options import (
     Settle,
     TorqueNoise,
 )
-from isotorque.cli.output import emit_json, row
+from isotorque.cli.output import emit_json, row, say_if_first
 from isotorque.cli.robot_options import RobotName, about, load, takes_robot
 
 
@@ -54,6 +54,7 @@ def discover(
     chosen.require_only("discovery", "scheme")
     options = RunOptions(robot, arm, n_min, confirm=confirm, settings=chosen)
     load(robot, quiet)
+    say_if_first(quiet)
     output_directory(out)
     with progress_bars(quiet) as progress:
         found = discover_symmetries(options, out, progress)

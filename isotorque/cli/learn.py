@@ -26,7 +26,7 @@ from isotorque.cli.options import (
     Symmetries,
     TorqueNoise,
 )
-from isotorque.cli.output import emit_json, row, say
+from isotorque.cli.output import emit_json, row, say, say_if_first
 from isotorque.cli.robot_options import load, named, takes_robot
 from isotorque.symbolic.common.robot_options import RobotOptions
 
@@ -165,6 +165,7 @@ def learn(
     else:
         _refuse(given, ("drop_outliers",), "a simulated arm")
         options = learn_options(robot, out, strategy, symmetries, learner, samples, given)
+        say_if_first(quiet)
         output_directory(out)
         with progress_bars(quiet) as progress:
             if strategy == LATTICE:

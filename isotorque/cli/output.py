@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 from isotorque.plain import plain
@@ -19,6 +20,15 @@ def say(message: str, quiet: bool = False) -> None:
     """Print a message on standard error."""
     if not quiet:
         print(message, file=sys.stderr)
+
+
+def say_if_first(quiet: bool) -> None:
+    """Tell who waits at a terminal that the first use compiles what moves and learns."""
+    from isotorque.learning.simulator.compiled import engine
+    from isotorque.symbolic.common.compiled import is_kept
+
+    if sys.stderr.isatty() and not is_kept(Path(engine.__file__).parent):
+        say("first use: compiling what moves and learns, about a minute", quiet)
 
 
 def row(values: Any, digits: int = 6) -> str:

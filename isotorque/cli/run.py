@@ -23,7 +23,7 @@ from isotorque.cli.options import (
     Symmetries,
     TorqueNoise,
 )
-from isotorque.cli.output import emit_json, say
+from isotorque.cli.output import emit_json, say, say_if_first
 from isotorque.cli.robot_options import RobotName, load, takes_robot
 from isotorque.plain import plain
 
@@ -71,6 +71,8 @@ def run(
     from isotorque.symbolic.common.files import output_directory
     from isotorque.verify.report.write_report import write_report
 
+    load(robot, quiet)
+    say_if_first(quiet)
     arm = ArmOptions(seed, "open_loop", engine, settle, angle_noise, torque_noise, encoder_step)
     options = run_options(
         robot,
@@ -86,7 +88,6 @@ def run(
         tolerance=tolerance,
         settings=Settings.of(settings or ()),
     )
-    load(robot, quiet)
     if options.guided_by_need:
         words = "cannot hold itself within its limits: it is guided (placed and held)"
         say(f"{robot.spec} {words}", quiet)

@@ -18,7 +18,7 @@ from isotorque.cli.options import (
     TorqueNoise,
     numbers,
 )
-from isotorque.cli.output import emit_json, row
+from isotorque.cli.output import emit_json, row, say_if_first
 from isotorque.cli.robot_options import RobotName, about, load, takes_robot
 
 
@@ -56,6 +56,7 @@ def simulate(
     tau = numbers(torque, "--torque", loaded.n)
     check_torque(loaded.name, "--torque", tau, loaded.effort, loaded.joint_names)
     q0 = None if start is None else numbers(start, "--from", loaded.n)
+    say_if_first(quiet)
     arm = SimulatedArm(
         loaded,
         physics=physics,

@@ -69,6 +69,12 @@ def cache_folder(beside: Path) -> Path | None:
     return None if place is None else place / f"numba-{module_names(PACKAGE)}"
 
 
+def is_kept(beside: Path) -> bool:
+    """Say whether an earlier process kept compiled functions of a source folder."""
+    folder = cache_folder(beside)
+    return folder is not None and next(folder.glob("**/*.nbi"), None) is not None
+
+
 @cache
 def module_names(package: Path) -> str:
     """Return a short hash of the names of all modules of a package, its links followed."""
