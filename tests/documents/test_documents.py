@@ -210,6 +210,7 @@ WITHOUT = {
     ("rigid-chain.md", "Gains, offsets, signs"): "settings",
     ("rigid-chain.md", "Snapping and symmetries"): "settings",
     ("rigid-chain.md", "Limits"): "settings",
+    ("theory.md", "Identification"): "counts of numbers",
     ("theory.md", "The words proved, bounded, tested"): "the rule of snapping",
     ("theory.md", "Level sets and secondary symmetries"): "a proof; `isotorque run` draws them",
     ("your-robot.md", "Your own recordings"): "the format of a recording",
