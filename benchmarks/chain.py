@@ -1,20 +1,25 @@
 """The rigid chain measured: poses needed, errors, gains, calibration, times.
 
-Usage: python -m benchmarks.chain [--seeds 20] [--random 1000] [--write]
+Usage: python -m benchmarks.chain [--seeds 20] [--random 1000] [--only FUNCTION] [--write]
 
 Poses are uniform over the torus (over the joint limits where said), noise is normal. Medians over
 the seeds, the worst in brackets. Times are processor times. With --write the table goes into
-docs/rigid-chain.md. A quarter of an hour. Relations: benchmarks.chain_relations.
+docs/rigid-chain.md. A quarter of an hour; with --only, rows of some functions of this module alone,
+the others stay as they stand. Relations: benchmarks.chain_relations.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import shutil
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -23,17 +28,28 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.gravity_forms import LOOP
 from benchmarks.shared.clear_errors import clear_errors
 from benchmarks.shared.document import write_between
 from benchmarks.shared.urdf_arms import EXAMPLE_ROBOTS, example_robots
+from isotorque.learning.export.c_export import c_source
+from isotorque.learning.export.from_learner import torque_form
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.gravity.c_source import gravity_c
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import Robot, load_robot
 from tests.learning.learners.rigid.random_chains import KINDS, random_chain, random_poses
 
 Array = NDArray[np.float64]
 PAGE = Path(__file__).parents[1] / "docs" / "rigid-chain.md"
+COMMAND = "python -m benchmarks.chain --write"
+HEAD = ["| | measured | demanded | holds |", "|---|---|---|---|"]
+DEMANDED = 60.0 / 72.0
+"""Time of exported C demanded, over the analytic model's: how fast a machine is cancels out."""
+TURNS = 15
+"""Times that compiled code is timed, in turns."""
 EXACT = 1e-9
 NOISE = 0.05
 
@@ -48,52 +64,80 @@ class Row:
     holds: bool | None = None
 
 
+Step = partial[Row | Iterator[Row]]
+"""A function of this module and its arguments: one row, or several."""
+
+
 def main() -> int:
     """Print the table; 1 if a row does not hold what is demanded."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--random", type=int, default=1000, help="random chains")
+    parser.add_argument("--only", metavar="FUNCTION", help="of this module, such as exported_c")
     parser.add_argument("--write", action="store_true", help=f"put the table into {PAGE.name}")
     options = parser.parse_args()
-    rows = []
-    for row in measured(options.seeds, options.random):
-        print(row.what, "|", row.measured, file=sys.stderr, flush=True)
-        rows.append(row)
+    steps = measured(options.seeds, options.random)
+    names = sorted({step.func.__name__ for step in steps})
+    if options.only is not None and options.only not in names:
+        raise InputError("command line", "--only", options.only, " or ".join(names))
+    rows: list[Row] = []
+    for step in steps:
+        if options.only in (None, step.func.__name__):
+            found = step()
+            rows.extend([found] if isinstance(found, Row) else found)
+            print(*lines(rows[-1:]), file=sys.stderr, flush=True)
     print(table(rows))
     if options.write:
-        write_between(PAGE, "python -m benchmarks.chain --write", table(rows))
+        text = table(rows) if options.only is None else with_rows(PAGE.read_text("utf-8"), rows)
+        write_between(PAGE, COMMAND, text)
     return int(any(row.holds is False for row in rows))
 
 
 def table(rows: list[Row]) -> str:
     """Rows as Markdown."""
+    return "\n".join([*HEAD, *lines(rows)])
+
+
+def lines(rows: list[Row]) -> list[str]:
+    """One line of Markdown each."""
     word = {True: "yes", False: "no", None: ""}
-    lines = [
-        f"| {row.what} | {row.measured} | {row.demanded} | {word[row.holds]} |" for row in rows
-    ]
-    return "\n".join(["| | measured | demanded | holds |", "|---|---|---|---|", *lines])
+    return [f"| {row.what} | {row.measured} | {row.demanded} | {word[row.holds]} |" for row in rows]
 
 
-def measured(seeds: int, chains: int) -> Iterator[Row]:
-    """All rows."""
+def with_rows(page: str, rows: list[Row]) -> str:
+    """The table of a page, rows of the same name replaced, others added."""
+    old = page.partition(f"<!-- {COMMAND} -->")[2].partition(f"<!-- end of {COMMAND} -->")[0]
+    kept = [line for line in old.splitlines() if line.startswith("|") and line not in HEAD]
+    for row, line in zip(rows, lines(rows), strict=True):
+        places = [k for k, other in enumerate(kept) if other.startswith(f"| {row.what} |")]
+        if places:
+            kept[places[0]] = line
+        else:
+            kept.append(line)
+    return "\n".join([*HEAD, *kept])
+
+
+def measured(seeds: int, chains: int) -> list[Step]:
+    """All rows, each still to be measured."""
+    steps: list[Step] = []
     for name, demanded in (("2r", 4), ("3r", 5), ("ur5", 6), ("panda", 8)):
-        yield poses_needed(name, demanded, seeds, unknown=False)
+        steps.append(partial(poses_needed, name, demanded, seeds, unknown=False))
     for name, demanded in (("ur5", 10), ("panda", 15)):
-        yield poses_needed(name, demanded, seeds, unknown=True)
-    for name in ("ur5", "panda"):
-        yield gains_and_offsets(name, seeds)
-    yield panda_within_limits(seeds)
+        steps.append(partial(poses_needed, name, demanded, seeds, unknown=True))
+    steps += [partial(gains_and_offsets, name, seeds) for name in ("ur5", "panda")]
+    steps.append(partial(panda_within_limits, seeds))
     for name, poses in (("ur5", 20), ("ur5", 40), ("panda", 20), ("panda", 40)):
-        yield beside_known_kinematics(name, poses, seeds)
+        steps.append(partial(beside_known_kinematics, name, poses, seeds))
     for name, poses in (("2r", 20), ("3r", 20), ("ur5", 20), ("ur5", 40), ("panda", 20)):
-        yield calibration(name, poses, seeds)
+        steps.append(partial(calibration, name, poses, seeds))
     for name, poses in (("2r", 20), ("ur5", 20), ("ur5", 40), ("panda", 20)):
-        yield calibration(name, poses, seeds, stated=False)
-    yield from calibrations_of_examples(seeds)
+        steps.append(partial(calibration, name, poses, seeds, stated=False))
+    steps.append(partial(calibrations_of_examples, seeds))
     for name in ("ur5", "panda"):
         for poses, demanded in ((40, 0.05), (300, 0.3)):
-            yield fit_time(name, poses, demanded, seeds)
-    yield random_chains(chains)
+            steps.append(partial(fit_time, name, poses, demanded, seeds))
+    steps += [partial(random_chains, chains), partial(exported_c)]
+    return steps
 
 
 def poses_needed(name: str, demanded: int, seeds: int, *, unknown: bool) -> Row:
@@ -281,6 +325,39 @@ def random_chains(count: int) -> Row:
         f"{accepted}; {wrong} ({max(starts)} starts at most)",
         "99.5 %; 0",
         accepted >= 0.995 * count and wrong == 0,
+    )
+
+
+def exported_c() -> Iterator[Row]:
+    """Time of a call of the exported C of the snapped chain, beside the analytic model's."""
+    if shutil.which("cc") is None:
+        return
+    robot = load_robot("panda")
+    gravity = GravityModel(robot)
+    q = random_poses(np.random.default_rng(0), 10, gravity.n)
+    learner = RigidChain().fit(q, gravity.torque(q))
+    assert learner.simplified()
+    sources = {"chain": c_source(torque_form(learner)), "analytic": gravity_c(gravity)}
+    times: dict[str, list[float]] = {name: [] for name in sources}
+    with tempfile.TemporaryDirectory() as folder:
+        for name, source in sources.items():
+            inside = Path(folder) / name
+            inside.mkdir()
+            (inside / "gravity.c").write_text(source)
+            (inside / "loop.c").write_text(LOOP)
+            command = ["cc", "-O2", "gravity.c", "loop.c", "-lm", "-o", "loop"]
+            subprocess.run(command, cwd=inside, check=True)
+        for _ in range(TURNS):
+            for name in sources:
+                command = [str(Path(folder) / name / "loop"), str(gravity.n)]
+                said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+                times[name].append(float(said.split()[0]))
+    chain, analytic = min(times["chain"]), min(times["analytic"])
+    yield Row(
+        f"panda: exported C of the snapped chain, fastest of {TURNS} turns",
+        f"{chain:.0f} ns, {chain / analytic:.2f} times the analytic model's",
+        f"60 ns, {DEMANDED:.2f} times",
+        chain <= DEMANDED * analytic,
     )
 
 
