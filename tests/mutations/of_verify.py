@@ -33,6 +33,13 @@ RELATIONS = (
         "a wave changes by up to twice its amplitude",
     ),
     Mutation(
+        "verify/relations/verify_relation.py",
+        "if np.equal(images, np.round(images)).all(axis=1).any():",
+        "if False:",
+        (RELATION,),
+        "a bound for every q is computed where waves may cancel",
+    ),
+    Mutation(
         "verify/relations/exact_proof.py",
         "OFFSET_ROUNDING = 2.0**-51",
         "OFFSET_ROUNDING = 1e-9",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +12,7 @@ from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
+from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.verify.relations.ball_bounds import certified_error, learned_map_bound
 from isotorque.verify.relations.exact_numbers import (
     angle,
@@ -27,6 +29,8 @@ from isotorque.verify.verdict import Status, Verdict
 
 Array = NDArray[np.float64]
 
+SURELY = 1.0 - 1e-9
+"""Share of a sum in floats that is exceeded surely."""
 IN_THE_BOX = ", for q within a turn around zero"
 """Added to the words of a claim that is judged there only: a real matrix has no period."""
 
@@ -113,18 +117,25 @@ def verify_relation(
     if relation.n != n:
         raise InputError("relation", "number of joints", relation.n, f"{n}, as the robot has")
     exact = exact_potential(potential)
+
+    @cache
+    def residual() -> Residual:
+        return Residual.of(exact_matrix(A), exact_vector(d), [int(y) for y in Y], exact)
+
     allowed = _tolerances(tolerance, n)
     if not potential.is_exact:
         allowed = np.maximum(allowed, gravity.rounding)
     words = describe_relation(relation) if claim is None else claim
     A, d, Y = relation.A, relation.unwrapped_d, relation.Y
     proof = prove_relation(A, d, Y, exact)
-    residual = Residual.of(exact_matrix(A), exact_vector(d), [int(y) for y in Y], exact)
-    bound = residual.bound()
+    nowhere_else = not proof.holds and _fails_far_away(A, exact, allowed)
+    bound = np.full(n, np.inf) if nowhere_else else residual().bound()
     stands = proof.holds or bool(np.all(bound <= allowed))
     if not stands and not np.array_equal(A, np.round(A)):
         words += IN_THE_BOX
         bound = np.minimum(bound, learned_map_bound(A, d, Y, exact))
+        if nowhere_else and not np.all(bound <= allowed):
+            bound = np.minimum(bound, residual().bound())
         stands = bool(np.all(bound <= allowed))
     if stands:
         _check_against_recursion(relation, gravity, bound)
@@ -137,7 +148,7 @@ def verify_relation(
     def fails(q: Array) -> bool:
         return bool(np.any(errors(q) > allowed))
 
-    excess = _Excess(residual, allowed)
+    excess = _Excess(residual(), allowed)
     largest, q = 0.0, None
     with single_thread():  # small steps of L-BFGS: threads would only wait for each other
         for candidate in excess.candidates(first=not simplify):
@@ -148,7 +159,7 @@ def verify_relation(
     if q is None:
         return Verdict(words, Status.TESTED, largest)
     margin = MARGIN * float(bound.max())
-    if simplify and residual.is_slow:
+    if simplify and residual().is_slow:
         simple = simplest_configuration(lambda x: excess.at(x) > margin, q)
         q = simple if fails(simple) else q
     return Verdict(words, Status.REFUTED, largest, q)
@@ -164,6 +175,23 @@ def verify_relations(
         )
         for i, relation in enumerate(relations, 1)
     )
+
+
+def _fails_far_away(A: Array, potential: TrigonometricPolynomial, allowed: Array) -> bool:
+    """Whether a bound for every q exceeds what is allowed, told without computing it.
+
+    Where A takes no frequency k to integers ``A^T k``, no wave of ``g(A q + d)`` cancels one of
+    ``Y g(q)``, and the amplitudes of the latter alone are part of the bound.
+    """
+    k = potential.frequencies
+    if np.array_equal(A, np.round(A)):
+        return False
+    with np.errstate(all="ignore"):
+        images = k @ A
+    if np.equal(images, np.round(images)).all(axis=1).any():
+        return False
+    amplitudes = np.hypot(potential.cos.astype(float), potential.sin.astype(float))
+    return bool(np.any(SURELY * (amplitudes @ np.abs(k)) > allowed))
 
 
 def describe_relation(relation: SymmetryRelation) -> str:

@@ -17,7 +17,9 @@ from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.symbolic.robots.kinematic_tree import planar_arm
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.relations.ball_bounds import learned_map_bound, relation_error_bound
 from isotorque.verify.relations.verify_relation import (
+    IN_THE_BOX,
     describe_relation,
     verify_relation,
     verify_relations,
@@ -279,6 +281,27 @@ def test_a_real_matrix_is_bounded_in_a_box_that_the_claim_names(two_link):
     assert verdict.status is Status.BOUNDED
     assert verdict.claim.endswith(", for q within a turn around zero")
     assert verify_relation(near, two_link.gravity, 1e3).claim.endswith("tau' = tau")
+
+
+@given(st.integers(0, 10**6), st.floats(1e-9, 0.3), st.floats(1e-3, 100.0))
+@settings(FEW, max_examples=25)
+def test_bounds_for_every_q_come_before_those_in_a_box(two_link, seed, size, tolerance):
+    rng = np.random.default_rng(seed)
+    relation = rng.choice(list(two_link.group))
+    A = relation.A + size * rng.normal(size=(2, 2)) * rng.integers(0, 2, (2, 2))
+    claimed = SymmetryRelation(A, relation.d, relation.Y)
+    verdict = verify_relation(claimed, two_link.gravity, tolerance, simplify=False)
+    everywhere = relation_error_bound(A, relation.d, relation.Y, two_link.gravity.potential)
+    near = learned_map_bound(A, relation.d, relation.Y, two_link.gravity.potential)
+    if (everywhere <= tolerance).all():
+        assert verdict.worst_error == everywhere.max()
+        assert verdict.claim == describe_relation(claimed)
+    elif (np.minimum(near, everywhere) <= tolerance).all():
+        assert verdict.status is Status.BOUNDED
+        assert verdict.worst_error <= near.max()
+        assert verdict.claim == describe_relation(claimed) + IN_THE_BOX
+    else:
+        assert verdict.status in (Status.TESTED, Status.REFUTED)
 
 
 def test_relations_are_written_readably():
