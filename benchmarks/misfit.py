@@ -1,6 +1,6 @@
 """Claims from arms that are more than rigid gravity: offsets, springs; and from clean ones.
 
-Usage: python -m benchmarks.misfit [--seeds 200] [--json] [--write]
+Usage: python -m benchmarks.misfit [--rows 500 2000] [--seeds 200 40] [--json] [--write]
 
 Every data set is an arm of its own: the built-in robot with a constant torque, or a spring, on one
 joint (even seeds) or on all of them with random signs (odd seeds). Rows lie anywhere, or where an
@@ -183,20 +183,29 @@ def holds(cell: Cell, result: Result) -> bool:
 def main(arguments: list[str] | None = None) -> int:
     """Print the table in Markdown, or as JSON; 1 if a cell does not hold what is demanded."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=200)
     parser.add_argument("--rows", type=int, nargs="*", default=list(ROWS))
+    parser.add_argument(
+        "--seeds",
+        type=int,
+        nargs="*",
+        default=[200],
+        help="data sets a cell, one for each of --rows",
+    )
     parser.add_argument("--cache", type=Path, default=Path("out/misfit.jsonl"))
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--write", action="store_true", help=f"put the table into {PAGE.name}")
     options = parser.parse_args(arguments)
+    if len(options.seeds) not in (1, len(options.rows)):
+        parser.error("--seeds: one number, or as many as --rows")
+    seeds = dict(zip(options.rows, options.seeds * len(options.rows), strict=False))
     done = _read(options.cache)
     results: list[tuple[Cell, Result]] = []
     for cell in cells():
         if cell.rows not in options.rows:
             continue
-        key = json.dumps([asdict(cell), options.seeds], sort_keys=True)
+        key = json.dumps([asdict(cell), seeds[cell.rows]], sort_keys=True)
         if key not in done:
-            result = judged(cell, range(options.seeds))
+            result = judged(cell, range(seeds[cell.rows]))
             options.cache.parent.mkdir(parents=True, exist_ok=True)
             with options.cache.open("a") as file:
                 file.write(json.dumps([key, asdict(result)]) + "\n")

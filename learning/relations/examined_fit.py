@@ -7,14 +7,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.learning.relations.potential.errors_in_variables import (
+    MeasurementNoise,
+    Undetermined,
+)
 from isotorque.learning.relations.potential.inactive_joints import fit_on_active_joints
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, quantile
-from isotorque.learning.statistics.lack_of_fit import LackOfFit, lack_of_fit
+from isotorque.learning.statistics.lack_of_fit import (
+    KINDS,
+    LackOfFit,
+    lack_of_fit,
+    samples_for_alternatives,
+)
 from isotorque.learning.statistics.poses import by_pose
 
 Array = NDArray[np.float64]
 
+EXACT = 1e-6
+"""Residuals below this share of the largest torque are where motions ended."""
 LARGEST_ERROR = 0.05
 """Relations are claimed if the data exclude larger RMS torque errors, relative to RMS torque."""
 BOUND_DEVIATIONS = 3.0
@@ -61,10 +71,27 @@ def examined_fit(q: Array, tau: Array, noise: MeasurementNoise | None) -> Examin
     Raises
     ------
     Undetermined
-        If the poses do not determine the potential, or not whether a joint matters.
+        If the poses do not determine the potential, or not whether a joint matters; and if they
+        are too few to see every kind of torque beside gravity. Then only samples that are explained
+        to rounding say that there is none: errors of anything else look like noise.
     """
     poses, q, torques = by_pose(q, tau)
     fit, unmoved = fit_on_active_joints(q, torques, noise, LARGEST_ERROR)
     deviations = quantile(BOUND_DEVIATIONS, fit.freedom)
     lack = lack_of_fit(fit, torques, poses=poses, rows=tau, deviations=deviations)
+    if len(lack.alternatives) < KINDS and not _explained(fit, torques):
+        least = samples_for_alternatives(fit)
+        raise Undetermined(
+            f"{least - fit.samples} more samples: {fit.samples} different ones were given, which "
+            f"rigid gravity and constants do not explain exactly; {least} show whether noise does, "
+            "or a spring or a cable"
+        )
     return ExaminedFit(fit, lack, unmoved)
+
+
+def _explained(fit: FittedPotential, tau: Array) -> bool:
+    """Whether a fit leaves nothing but rounding of the torques."""
+    samples = fit.whitened
+    residual = samples.residual.reshape(len(samples.q), -1, 1)
+    left = np.abs(np.linalg.solve(samples.whitening, residual)).max()
+    return bool(left <= EXACT * np.abs(tau).max())

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
 from isotorque.learning.statistics.added_terms import (
+    SPARE,
     added_terms,
     in_words,
     second_harmonics,
@@ -30,6 +31,8 @@ NEGLIGIBLE = 1e-6
 """Misfits below this share of the largest torque are where motions ended; bounds allow for them."""
 PURE_ERROR_SIGNIFICANCE, PURE_ERROR_SHARE = 1e-4, 0.02
 """Where poses repeat, the misfit must be this significant and this share of the torque (RMS)."""
+KINDS, WIDEST = 2, 2
+"""Alternatives, and terms per joint of the widest one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,6 +184,13 @@ def lack_of_fit(
             misfit = beyond
             said = f"residuals of {_listed(beyond)} N m RMS by joint, more than the given noise"
     return LackOfFit(joints, fit.offsets, fit.offset_errors, found, misfit, said)
+
+
+def samples_for_alternatives(fit: FittedPotential) -> int:
+    """Samples from which every alternative is tried."""
+    samples = fit.whitened
+    joints = len(samples.joints)
+    return -(-(samples.design.shape[1] + WIDEST * joints + SPARE) // joints)
 
 
 def _listed(values: Array) -> str:

@@ -187,6 +187,20 @@ STATISTICS = (
         "an alternative may be larger than its estimate",
     ),
     Mutation(
+        "learning/relations/examined_fit.py",
+        "if len(lack.alternatives) < KINDS and not _explained(fit, torques):",
+        "if False:",
+        ("tests/learning/relations/test_examined_fit.py",),
+        "no claim from samples too few to see a spring or a cable",
+    ),
+    Mutation(
+        "learning/relations/examined_fit.py",
+        "return bool(left <= EXACT * np.abs(tau).max())",
+        "return bool(left <= 1e4 * EXACT * np.abs(tau).max())",
+        ("tests/learning/relations/test_examined_fit.py",),
+        "few samples are exact only up to rounding",
+    ),
+    Mutation(
         "learning/learners/cross_validation.py",
         "folds = poses.count if poses.count <= LEAVE_ONE_OUT else FOLDS",
         "folds = FOLDS",
