@@ -154,7 +154,9 @@ class ChainFromData:
         }
         still = self.constant_torques
         if still:
-            found["constant_torques"] = {n: float(self.samples.tau[0, j]) for j, n in still}
+            found["constant_torques"] = {
+                name: float(self.samples.tau[0, j]) + 0.0 for j, name in still
+            }
         if isinstance(learner, RigidChain):
             next_poses = poses_to_take(learner.fit_, self.options.seed)
             if next_poses is not None:
