@@ -40,6 +40,20 @@ RELATIONS = (
         "a bound for every q is computed where waves may cancel",
     ),
     Mutation(
+        "verify/relations/exact_numbers.py",
+        "with ctx.workprec(PRECISION_BITS + bits):",
+        "with ctx.workprec(PRECISION_BITS):",
+        ("tests/verify/relations/test_exact_numbers.py",),
+        "angles of many turns are reduced with enough digits",
+    ),
+    Mutation(
+        "verify/relations/residual.py",
+        "return all(abs(x) <= SLOW * self.divisor for f in self.waves for x in f)",
+        "return True",
+        (RELATION,),
+        "waves too fast for floats are searched exactly",
+    ),
+    Mutation(
         "verify/relations/exact_proof.py",
         "OFFSET_ROUNDING = 2.0**-51",
         "OFFSET_ROUNDING = 1e-9",

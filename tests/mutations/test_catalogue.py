@@ -13,7 +13,7 @@ def test_there_are_enough_of_them_and_none_twice():
     assert len(MUTATIONS) >= 60
     assert len({(m.file, m.original, m.mutated) for m in MUTATIONS}) == len(MUTATIONS)
     floors = {m.file.split("/")[0] for m in MUTATIONS}
-    assert floors == {"symbolic", "learning", "verify"}
+    assert floors == {"symbolic", "learning", "verify", "isotorque", "contracts"}
 
 
 def test_each_says_what_it_guards_and_who_must_notice():

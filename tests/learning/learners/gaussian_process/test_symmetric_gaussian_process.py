@@ -148,3 +148,18 @@ def test_mean_is_that_of_scikit_learn(noise):
     expected = [process.predict(q + 0.3) for process in learner.processes_]
     scale = np.sqrt(np.mean(torque**2, axis=0))
     assert np.abs(learner.predict(q + 0.3) - np.transpose(expected) * scale).max() < 1e-11
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(6, 16))
+@settings(max_examples=6)
+def test_no_length_scale_is_below_the_distance_of_the_samples(seed, count):
+    # torques without any form are fitted best by a process that knows each sample by itself
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-np.pi, np.pi, (count, 2))
+    torque = np.stack([np.cos(q[:, 0]), rng.choice([-1.0, 1.0], count)], axis=1)
+    learner = SymmetricGaussianProcess(0.0, random_state=0).fit(q, torque)
+    chords = np.abs(np.exp(1j * q[:, None]) - np.exp(1j * q))
+    distance = np.sqrt((chords**2).sum(axis=2)) + 1e9 * np.eye(count)
+    usual = np.median(distance.min(axis=1))
+    for joint in range(2):
+        assert learner.covariance_sum(joint)[1] >= 0.999 * min(usual, 0.5)
