@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.chain import COMMAND, HEAD, PAGE, Row, lines, main, measured, table, with_rows
+from benchmarks.chain.fit import COMMAND, HEAD, PAGE, Row, lines, main, measured, table, with_rows
 from isotorque.symbolic.common.errors import InputError
 
 ROWS = [Row("a", "1", "2", True), Row("b", "3"), Row("c", "4", "3", False)]

@@ -1,11 +1,11 @@
 """The rigid chain measured: poses needed, errors, gains, calibration, times.
 
-Usage: python -m benchmarks.chain [--seeds 20] [--random 1000] [--only FUNCTION] [--write]
+Usage: python -m benchmarks.chain.fit [--seeds 20] [--random 1000] [--only FUNCTION] [--write]
 
 Poses are uniform over the torus (over the joint limits where said), noise is normal. Medians over
 the seeds, the worst in brackets. Times are processor times. With --write the table goes into
 docs/rigid-chain.md. A quarter of an hour; with --only, rows of some functions of this module alone,
-the others stay as they stand. Relations: benchmarks.chain_relations.
+the others stay as they stand. Relations: benchmarks.chain.relations.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ from isotorque.symbolic.robots.load_robot import Robot, load_robot
 from tests.learning.learners.rigid.random_chains import KINDS, random_chain, random_poses
 
 Array = NDArray[np.float64]
-PAGE = Path(__file__).parents[1] / "docs" / "rigid-chain.md"
-COMMAND = "python -m benchmarks.chain --write"
+PAGE = Path(__file__).parents[2] / "docs" / "rigid-chain.md"
+COMMAND = "python -m benchmarks.chain.fit --write"
 HEAD = ["| | measured | demanded | holds |", "|---|---|---|---|"]
 DEMANDED = 60.0 / 72.0
 """Time of exported C demanded, over the analytic model's: how fast a machine is cancels out."""

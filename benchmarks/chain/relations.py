@@ -1,6 +1,6 @@
 """Relations by the rigid chain: of arms from a few poses in noise, and of a 3R arm by itself.
 
-Usage: python -m benchmarks.chain_relations [--seeds 100] [--discoveries 20] [--write]
+Usage: python -m benchmarks.chain.relations [--seeds 100] [--discoveries 20] [--write]
 
 Poses are uniform over the torus, noise is normal; the noise of poses is stated, that of a discovery
 nobody tells. A seed is right if every relation that is claimed keeps its bound at 500 other poses.
@@ -40,8 +40,8 @@ from isotorque.symbolic.symmetries.approximate_symmetries import maximal_groups
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
 
 Array = NDArray[np.float64]
-PAGE = Path(__file__).parents[1] / "docs" / "rigid-chain.md"
-NAME = "python -m benchmarks.chain_relations --write"
+PAGE = Path(__file__).parents[2] / "docs" / "rigid-chain.md"
+NAME = "python -m benchmarks.chain.relations --write"
 
 BUILT_IN = ("3r", "ur5", "panda")
 EXAMPLES = {

@@ -1,6 +1,6 @@
 """Arms with cables and springs: a rigid chain, processes on what it leaves, and both refitted.
 
-Usage: python -m benchmarks.chain_process [--seeds 10] [--write]
+Usage: python -m benchmarks.chain.process [--seeds 10] [--write]
 
 The arms are the built-in ones with a cable (a wave of twice the angle, of random phase) and a
 spring at every joint, each of random size up to 4 % of the joint's largest torque, and links that
@@ -33,8 +33,8 @@ from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 
 Array = NDArray[np.float64]
-PAGE = Path(__file__).parents[1] / "docs" / "rigid-chain.md"
-MARK = "python -m benchmarks.chain_process --write"
+PAGE = Path(__file__).parents[2] / "docs" / "rigid-chain.md"
+MARK = "python -m benchmarks.chain.process --write"
 
 ROBOTS = ("2r", "ur5", "panda")
 POSES = (15, 30, 60)

@@ -1,6 +1,6 @@
 """Poses of the rigid chain measured: planned against random ones, and those an arm finds itself.
 
-Usage: python -m benchmarks.chain_poses [--seeds 20] [--write]
+Usage: python -m benchmarks.chain.poses [--seeds 20] [--write]
 
 Poses are planned from the robot file as a first guess (`isotorque plan ROBOT`), anywhere on the
 torus; random ones are uniform over it. Medians over the seeds. Stable poses are those that the
@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from benchmarks.chain import NOISE, PAGE, Row, table
+from benchmarks.chain.fit import NOISE, PAGE, Row, table
 from benchmarks.shared.clear_errors import clear_errors
 from benchmarks.shared.document import write_between
 from benchmarks.shared.small_arms import SMALL_ARMS, write_arm
@@ -69,7 +69,7 @@ def main() -> int:
         rows.append(row)
     print(table(rows))
     if options.write:
-        write_between(PAGE, "python -m benchmarks.chain_poses --write", table(rows))
+        write_between(PAGE, "python -m benchmarks.chain.poses --write", table(rows))
     return int(any(row.holds is False for row in rows))
 
 

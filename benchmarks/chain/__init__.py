@@ -1,0 +1,1 @@
+"""The rigid chain, measured: fits, planned and stable poses, relations, nearly rigid arms."""
