@@ -152,6 +152,13 @@ ROBOTS = (
         "turns of the joints before a joint add up",
     ),
     Mutation(
+        "symbolic/robots/body_checks.py",
+        "SMALLEST_MASS = 1e-12",
+        "SMALLEST_MASS = 0.0",
+        ("tests/symbolic/robots/test_body_checks.py",),
+        "arms too light for floats are refused by their mass, not by what underflows",
+    ),
+    Mutation(
         "symbolic/robots/snapping.py",
         "SNAP_ANGLE = 1e-5",
         "SNAP_ANGLE = 1e-3",

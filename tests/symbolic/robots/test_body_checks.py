@@ -42,3 +42,18 @@ def test_a_mirror_is_no_rotation():
     mirrored = np.array([np.diag([1.0, 1.0, -1.0]), np.eye(3)])
     with pytest.raises(InputError, match="placement of joint 'first'"):
         check_body(replace(body, rotations=mirrored), "arm")
+
+
+@pytest.mark.parametrize("weight", [1e-300, 7e-300, 1e-20, 9e-13])
+def test_arms_too_light_for_floats_are_refused_by_their_mass_in_one_line(weight):
+    body = ArmBody.from_model(two_joints(), "arm")
+    light = replace(body, masses=body.masses * weight / body.masses.sum())
+    with pytest.raises(InputError) as caught:
+        check_body(light, "new\nline.urdf")
+    said = str(caught.value)
+    assert said == (
+        f"new\\nline.urdf: mass of all moving links is {weight:.3g} kg; accepted: 0, or at least "
+        "1e-12 kg"
+    )
+    assert said.isprintable()
+    check_body(replace(body, masses=body.masses * 2e-12 / body.masses.sum()), "arm")
