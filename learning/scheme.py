@@ -331,9 +331,10 @@ class Scheme:
         known = self.learned
         if not self.settings.from_trajectories or known is None or not known.decided:
             return
-        if known.fit is not None:
+        fit = known.fit if known.chain is None else known.chain.snapped().chain
+        if fit is not None:
             for trajectory in self._trajectories:
-                self.static_torques.add(visited_torques(known.fit, trajectory))
+                self.static_torques.add(visited_torques(fit, trajectory))
 
     def _confirm(self) -> Iterator[Discovery]:
         """Command the torques that say most about the relations; ask the gate again."""

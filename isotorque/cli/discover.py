@@ -69,6 +69,7 @@ def discover(
         "timeouts": ends[OutcomeKind.TIMEOUT],
         "relations": 1 if learned is None else learned.order,
         "missing": None if learned is None else learned.missing,
+        "remarks": found.remarks,
     }
     if json:
         emit_json(document)
@@ -80,3 +81,5 @@ def discover(
     print(f"{document['relations']} relations known; see them with: isotorque relations {out}")
     if document["missing"]:
         print(f"missing: {document['missing']}")
+    for remark in document["remarks"]:
+        print(remark)

@@ -118,6 +118,10 @@ def discover_symmetries(options: RunOptions, out: Path, progress: Progress) -> R
         progress(DISCOVERING, len(result.motions), len(result.motions), _gate_note(scheme))
         recorded.finish()
     result.remarks += _torques_cut(limited, "discovery")
+    known = scheme.learned
+    if options.confirm and known is not None and known.fit is None:
+        why = "relations are those of a rigid chain" if known.chain else "no potential is known"
+        result.remarks += (f"no torques were chosen to confirm the relations: {why}",)
     return result
 
 

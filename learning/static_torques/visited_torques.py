@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
 from isotorque.learning.relations.potential.errors_in_variables import stiffness_matrices
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.symbolic.common.errors import InputError
@@ -13,15 +14,19 @@ Array = NDArray[np.float64]
 
 SPACING = 0.05
 """Configurations nearer to each other than this say the same [rad]."""
+NOTHING = 1e-9
+"""Gravity does not act on a joint whose stiffness is so small a share of the largest."""
 
 
-def visited_torques(fit: FittedPotential, q: ArrayLike, *, spacing: float = SPACING) -> Array:
+def visited_torques(
+    fit: FittedPotential | ChainParameters, q: ArrayLike, *, spacing: float = SPACING
+) -> Array:
     """Torques that would have held an arm where it passed by.
 
     Parameters
     ----------
-    fit : FittedPotential
-        The potential fitted to settled samples of the same arm.
+    fit : FittedPotential or ChainParameters
+        The potential, or the snapped rigid chain, fitted to settled samples of the same arm.
     q : (T, n) array_like
         Joint trajectory of a torque profile, within the joint limits [rad].
     spacing : float
@@ -57,7 +62,7 @@ def visited_torques(fit: FittedPotential, q: ArrayLike, *, spacing: float = SPAC
     [2.7, 3.66, 4.39, 4.85]
     """
     trajectory = np.asarray(q, dtype=float)
-    n = fit.frequencies.shape[1]
+    n = fit.n if isinstance(fit, ChainParameters) else fit.frequencies.shape[1]
     if trajectory.ndim != 2 or trajectory.shape[1] != n:
         raise InputError("visited torques", "shape of q", trajectory.shape, f"(T, {n})")
     if not len(trajectory):
@@ -67,7 +72,11 @@ def visited_torques(fit: FittedPotential, q: ArrayLike, *, spacing: float = SPAC
         if np.abs(trajectory[i] - trajectory[kept[-1]]).max() >= spacing:
             kept.append(i)
     visited = trajectory[kept]
-    acting = fit.frequencies.any(axis=0)
-    stiffness = stiffness_matrices(fit.frequencies, fit.coefficients, visited)
+    if isinstance(fit, ChainParameters):
+        stiffness, torque = fit.stiffness(visited), fit.torque
+        acting = np.abs(stiffness).max(axis=(0, 1)) > NOTHING * np.abs(stiffness).max()
+    else:
+        stiffness = stiffness_matrices(fit.frequencies, fit.coefficients, visited)
+        acting, torque = fit.frequencies.any(axis=0), fit.potential.gradient
     stable = np.linalg.eigvalsh(stiffness[:, acting][:, :, acting])[:, 0] > 0.0
-    return np.asarray(fit.potential.gradient(visited[stable]))
+    return np.asarray(torque(visited[stable]))

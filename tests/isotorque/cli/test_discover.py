@@ -119,3 +119,9 @@ def test_a_run_makes_the_same_discovery(confirmed, tmp_path, capsys):
 def test_fewer_than_none_is_refused(tmp_path, capsys):
     assert status(["discover", "2r", "--out", str(tmp_path), "--confirm", "-1"]) == 2
     assert "--confirm" in capsys.readouterr().err
+
+
+def test_confirmation_that_a_chain_makes_needless_is_said(tmp_path, capsys):
+    assert status(["discover", "ur5", "--confirm", "2", "--out", str(tmp_path), "--quiet"]) == 0
+    said = capsys.readouterr().out
+    assert "no torques were chosen to confirm the relations: relations are those of a rigid" in said

@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
 from isotorque.learning.scheme import Scheme, SchemeSettings
 from isotorque.learning.simulator.simulated_arm import SimulatedArm
@@ -28,6 +29,22 @@ def test_each_torque_holds_the_arm_somewhere_on_its_way(seed, spacing):
     # without spacing every stable configuration on the way counts
     taken = visited_torques(fit, way, spacing=1e-12)
     assert len(found) <= len(taken) == len(stable)
+
+
+@pytest.mark.parametrize("robot", ["2r", "3r", "ur5"])
+def test_a_chain_tells_the_same_torques(robot):
+    gravity = GravityModel(load_robot(robot))
+    n = gravity.n
+    rng = np.random.default_rng(0)
+    q = rng.uniform(-3, 3, (12, n))
+    chain = RigidChain().fit(q, gravity.torque(q)).snapped().chain
+    way = np.cumsum(rng.normal(scale=0.05, size=(3000, n)), axis=0)
+    found = visited_torques(chain, way, spacing=1e-12)
+    acting = gravity.potential.frequencies.any(axis=0)
+    stiffness = gravity.stiffness(way)[:, acting][:, :, acting]
+    stable = np.linalg.eigvalsh(stiffness)[:, 0] > 0
+    assert 0 < stable.sum() < len(way)
+    assert np.allclose(found, gravity.torque(way[stable]), atol=1e-9)
 
 
 def test_nothing_visited_and_wrong_joints():
