@@ -44,11 +44,13 @@ ROBOT_OPTIONS: dict[str, str] = {
 """Options of a robot, written as on the command line."""
 SEVERAL = ("lock", "payload")
 """Options that may be given several times: with spaces between, quoted as in a shell."""
+SET = "set"
+"""Settings as ``--set`` takes them, with spaces between."""
 OPTIONS: dict[str, str] = {
     f.name: str(f.type)
     for f in (*fields(RunOptions), *fields(ArmOptions))
     if f.type in READERS and f.name not in (*REQUIRED, "learn_anyway")
-} | ROBOT_OPTIONS
+} | {**ROBOT_OPTIONS, SET: "str"}
 """What a table may say beside the required columns, each with its type: as options of `learn`.
 A sweep measures: it always learns, and tells whether the gate was passed."""
 
@@ -84,6 +86,8 @@ class SweepRun:
     def option(self, name: str) -> Any:
         """Return one of `OPTIONS`."""
         options = self.options
+        if name == SET:
+            return shlex.join(options.settings.words)
         if name in ROBOT_OPTIONS:
             value = options.robot.as_json().get(name, getattr(options.robot, name))
             if name in SEVERAL:
@@ -247,6 +251,7 @@ def _run(where: str, given: Mapping[str, Any]) -> SweepRun:
     usual = default_samples(strategy, learner) if strategy == LATTICE else SAMPLES
     try:
         part = _robot(robot, given)
+        given = {**given, "settings": _words(SET, given.get(SET, ""))}
         options = learn_options(
             part,
             None,
@@ -276,8 +281,17 @@ def _robot(spec: str, given: Mapping[str, Any]) -> RobotOptions:
     options = {name: given[name] for name in ROBOT_OPTIONS if name in given}
     for name in SEVERAL:
         if name in options:
-            options[name] = shlex.split(options[name])
+            options[name] = _words(name, options[name])
     return RobotOptions(spec, **options)
+
+
+def _words(name: str, text: str) -> list[str]:
+    """Split the entries of an option that may be given several times."""
+    try:
+        return shlex.split(text)
+    except ValueError as error:
+        accepted = "words with spaces between, quoted as in a shell"
+        raise InputError("table", name, f"{text!r} ({error})", accepted) from error
 
 
 def told_options(runs: Sequence[SweepRun]) -> list[str]:

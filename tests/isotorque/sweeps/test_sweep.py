@@ -172,6 +172,7 @@ def test_strategies_and_other_options_are_columns(tmp_path):
 def test_all_options_of_a_run_are_columns():
     known = {f.name for kind in (RunOptions, ArmOptions) for f in fields(kind)}
     assert known - set(OPTIONS) == {
+        "settings",  # the column is called set, as the option
         "robot",
         "learner",
         "seed",
@@ -180,6 +181,23 @@ def test_all_options_of_a_run_are_columns():
         "learn_anyway",
         "tolerance",  # a sweep always learns, and judges nothing
     }
+
+
+def test_settings_are_a_column(tmp_path):
+    text = f'robots = ["pendulum"]\nlearners = ["{LEARNER}"]\nset = ["", "epsilon=0.2 sigma=0"]\n'
+    plain, chosen = read_sweep(table(tmp_path / "t.toml", text))
+    assert plain.options.settings.values == ()
+    assert chosen.options.settings.exploration.step_width == 0.2
+    assert chosen.option("set") == "exploration.noise=0 exploration.step_width=0.2"
+    assert plain.name != chosen.name
+    refused = {
+        "epsilon=much": "accepted: a number",
+        "epsilon": "NAME=VALUE",
+        "'epsilon=0.2": "quoted as in a shell",
+    }
+    for value, accepted in refused.items():
+        with pytest.raises(InputError, match=accepted):
+            read_sweep(table(tmp_path / "t.toml", text.replace("epsilon=0.2 sigma=0", value)))
 
 
 def test_a_lattice_is_learned_from(tmp_path, capsys):
