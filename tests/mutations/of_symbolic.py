@@ -195,6 +195,13 @@ ROBOTS = (
     ),
     Mutation(
         "symbolic/gravity/gravity_model.py",
+        "return _ROUNDING * _torque_scale(self.tree) + float(np.finfo(float).tiny)",
+        "return _ROUNDING * 100.0",
+        ("tests/scales/test_groups.py", "tests/symbolic/gravity/test_gravity_model.py"),
+        "rounding is in proportion to masses, lengths and gravity: arms of hardly any torque too",
+    ),
+    Mutation(
+        "symbolic/gravity/gravity_model.py",
         "allowed = self._reference.snap_bound + rounding",
         "allowed = 2 * self._reference.snap_bound + 1e6 * rounding",
         ("tests/symbolic/gravity/test_gravity_model.py",),

@@ -156,4 +156,21 @@ MODELS = (
     ),
 )
 
-MUTATIONS = (*RELATIONS, *MODELS)
+REPORTS = (
+    Mutation(
+        "isotorque/runs/judgement.py",
+        "run.steps, run.scheme.group, run.scheme.settings.exploration.step_width\n",
+        "run.steps, run.scheme.group\n",
+        ("tests/isotorque/cli/test_run.py::test_the_report_holds_what_was_learned_and_judged",),
+        "the share of the domain that is explored says within which distance",
+    ),
+    Mutation(
+        "verify/report/summaries.py",
+        "explored_radius=radius if shares else None,",
+        "explored_radius=None,",
+        ("tests/isotorque/cli/test_run.py::test_the_report_holds_what_was_learned_and_judged",),
+        "the share of the domain that is explored says within which distance",
+    ),
+)
+
+MUTATIONS = (*RELATIONS, *MODELS, *REPORTS)

@@ -86,3 +86,11 @@ def test_exact_numbers_beyond_floating_point_are_refused():
     potential = TrigonometricPolynomial([[1]], [0], [10**400])
     with pytest.raises(InputError, match="largest amplitude of the potential"):
         primary_symmetries(potential)
+
+
+@given(st.sampled_from(sorted(ORDERS)), st.floats(-9, 9), st.floats(-9, 9))
+def test_what_rounding_may_do_grows_with_masses_and_lengths(name, mass, length):
+    """An absolute allowance would pass any torque of a light arm, and refuse a heavy one."""
+    usual = GravityModel(load_robot(name)).rounding
+    resized = GravityModel(load_robot(sized(name, 10**mass, 10**length))).rounding
+    assert resized == pytest.approx(10 ** (mass + length) * usual, rel=1e-6)

@@ -39,6 +39,7 @@ def test_the_report_holds_what_was_learned_and_judged(report):
     assert document["setup"]["robot"] == "2r"
     assert len(document["symmetry"]["relations"]) == 8
     assert document["symmetry"]["found"] == 8
+    assert document["exploration"]["explored_radius"] == 0.3  # a share says within which distance
     assert document["symmetry"]["false"] == 0
     assert document["exploration"]["commands"] == 150
     samples = document["curves"][0]["samples"]
