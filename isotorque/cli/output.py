@@ -24,11 +24,13 @@ def say(message: str, quiet: bool = False) -> None:
 
 def say_if_first(quiet: bool) -> None:
     """Tell who waits at a terminal that the first use compiles what moves and learns."""
+    if quiet or not sys.stderr.isatty():
+        return
     from isotorque.learning.simulator.compiled import engine
     from isotorque.symbolic.common.compiled import is_kept
 
-    if sys.stderr.isatty() and not is_kept(Path(engine.__file__).parent):
-        say("first use: compiling what moves and learns, about a minute", quiet)
+    if not is_kept(Path(engine.__file__).parent):
+        say("first use: compiling what moves and learns, about a minute")
 
 
 def row(values: Any, digits: int = 6) -> str:

@@ -160,11 +160,8 @@ def measure_home_torque(arm: Any, rng: np.random.Generator) -> Search:
         yield held
         torque = np.array(held.torque, dtype=float)
         size = np.full(len(torque), np.abs(torque).max())
-    kept = 0
-    for attempt in range(TRIES):
-        if attempt == 0 and rests:
-            kept += 1
-            continue
+    kept = int(rests)  # the first try, without an error, has been made already
+    for attempt in range(kept, TRIES):
         error = ERROR * size * rng.standard_normal(len(torque))
         _at_home(arm)
         outcome = arm.apply(torque + (error if attempt else 0.0))

@@ -76,6 +76,8 @@ def learn_relations(
     snap : bool
         Round offsets to multiples of a right angle where all of them agree; every relation says
         whether that was done.
+    parents : sequence of int, optional
+        Joint that carries each joint, -1 for the base; in series by default.
 
     Returns
     -------
