@@ -13,6 +13,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
 )
 from isotorque.learning.relations.potential.inactive_joints import fit_on_active_joints
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, quantile
+from isotorque.learning.relations.potential.samples_needed import samples_needed
 from isotorque.learning.statistics.lack_of_fit import (
     KINDS,
     LackOfFit,
@@ -29,6 +30,28 @@ LARGEST_ERROR = 0.05
 """Relations are claimed if the data exclude larger RMS torque errors, relative to RMS torque."""
 BOUND_DEVIATIONS = 3.0
 """Errors are stated at as small a chance as three standard errors of a normal variable."""
+
+
+def could_be_wrong(samples: int, excess: float) -> str:
+    """Say how many samples would allow relations to be claimed.
+
+    Parameters
+    ----------
+    samples : int
+        Number of samples.
+    excess : float
+        Largest error that a relation may have, divided by the one that is allowed.
+
+    Examples
+    --------
+    >>> could_be_wrong(20, 2.0)
+    'about 60 more samples: relations could still be wrong by 10 % of the torque, 5 % are allowed'
+    """
+    percent = 100.0 * LARGEST_ERROR
+    return (
+        f"{samples_needed(samples, excess)}: relations could still be wrong by "
+        f"{percent * excess:.2g} % of the torque, {percent:.0f} % are allowed"
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,6 +17,7 @@ OR_FRICTION = (
     ", or friction approached from one side: not to be told apart without approach directions"
 )
 """Said wherever constants are named: joints that always stop moving the same way show the same."""
+
 SIGNIFICANCE = 1e-4
 """Chance with which a constant is seen on any joint where there is none."""
 NEGLIGIBLE = 1e-6
@@ -30,6 +31,30 @@ SPARE_NOISY = 10.0
 few samples do not show that."""
 EXACT = 1e-9
 """Residuals below this share of the largest torque are rounding."""
+
+
+def constants_in_words(joints: NDArray[np.intp], sizes: Array, errors: Array) -> str:
+    """Name constant torques with their standard errors, and what else shows the same.
+
+    Parameters
+    ----------
+    joints : (k,) array
+        Those that have one, numbered from 0.
+    sizes, errors : (n,) arrays
+        Of all joints [N m].
+
+    Examples
+    --------
+    >>> said = constants_in_words(np.array([1]), np.array([0.0, 0.3]), np.array([0.1, 0.004]))
+    >>> said.startswith("a constant torque of +0.3 N m on joint 2 (standard error 0.004), or ")
+    True
+    """
+    named = "; ".join(
+        f"a constant torque of {sizes[j]:+.3g} N m on joint {j + 1} (standard error "
+        f"{errors[j]:.1g})"
+        for j in joints
+    )
+    return f"{named}{OR_FRICTION}" if named else ""
 
 
 def constant_torques(features: Array, torque: Array, weight: Array) -> NDArray[np.intp]:

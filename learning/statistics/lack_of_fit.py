@@ -20,7 +20,7 @@ from isotorque.learning.statistics.added_terms import (
     second_harmonics,
     springs,
 )
-from isotorque.learning.statistics.constant_torques import OR_FRICTION
+from isotorque.learning.statistics.constant_torques import constants_in_words
 from isotorque.learning.statistics.poses import Poses
 
 Array = NDArray[np.float64]
@@ -160,12 +160,7 @@ def lack_of_fit(
     nothing = np.zeros(n)
     worst = min(found, key=lambda a: a.p_value, default=None)
     joints = _offset_joints(fit, largest)
-    offset = "; ".join(
-        f"a constant torque of {fit.offsets[j]:+.3g} N m on joint {j + 1} (standard error "
-        f"{fit.offset_errors[j]:.1g})"
-        for j in joints
-    )
-    misfit, said = nothing, f"{offset}{OR_FRICTION}" if offset else ""
+    misfit, said = nothing, constants_in_words(joints, fit.offsets, fit.offset_errors)
     if worst is not None and worst.p_value < SIGNIFICANCE / len(found):
         if worst.misfit.max() > NEGLIGIBLE * largest:
             misfit, said = worst.misfit, worst.said

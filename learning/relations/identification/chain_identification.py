@@ -11,7 +11,7 @@ from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.planning.poses_needed import fewest_poses
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain
-from isotorque.learning.relations.examined_fit import LARGEST_ERROR
+from isotorque.learning.relations.examined_fit import LARGEST_ERROR, could_be_wrong
 from isotorque.learning.relations.identification.unfelt_levers import unfelt_lever
 from isotorque.learning.relations.learned_symmetries import (
     Knowledge,
@@ -20,7 +20,6 @@ from isotorque.learning.relations.learned_symmetries import (
     nothing_learned,
 )
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
-from isotorque.learning.relations.potential.samples_needed import samples_needed
 from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.statistics.lack_of_fit import LackOfFit
 from isotorque.learning.statistics.poses import by_pose
@@ -156,11 +155,7 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
         return nothing_learned(samples.n, missing, METHOD)
     excess = float(found.gravity_bounds.max()) / (LARGEST_ERROR * samples.largest_torque)
     if excess > 1.0:
-        missing = (
-            f"{samples_needed(len(samples.q), excess)}: relations could still be wrong by "
-            f"{100.0 * LARGEST_ERROR * excess:.2g} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
-            "are allowed"
-        )
+        missing = could_be_wrong(len(samples.q), excess)
         return nothing_learned(samples.n, missing, METHOD)
     relations = tuple(
         LearnedRelation(

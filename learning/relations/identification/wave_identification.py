@@ -9,7 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
 from isotorque.learning.relations.claim_bounds import claim_bounds
-from isotorque.learning.relations.examined_fit import LARGEST_ERROR, ExaminedFit, examined_fit
+from isotorque.learning.relations.examined_fit import (
+    LARGEST_ERROR,
+    ExaminedFit,
+    could_be_wrong,
+    examined_fit,
+)
 from isotorque.learning.relations.identification.group_fit import GroupFit
 from isotorque.learning.relations.identification.group_search import (
     candidate_relations,
@@ -31,7 +36,6 @@ from isotorque.learning.relations.potential.potential_fit import (
     present_frequencies,
     quantile,
 )
-from isotorque.learning.relations.potential.samples_needed import samples_needed
 from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.statistics.misfit_advice import misfit_advice
 from isotorque.learning.statistics.poses import by_pose
@@ -184,11 +188,7 @@ def claim(examined: ExaminedFit, best: GroupFit, snap: bool) -> LearnedSymmetrie
     excess = float((rms / np.where(size > 0.0, size, np.inf))[:, involved].max(initial=0.0))
     excess /= LARGEST_ERROR
     if excess > 1.0:
-        missing = (
-            f"{samples_needed(fit.samples, excess)}: relations could still be wrong by "
-            f"{100.0 * LARGEST_ERROR * excess:.2g} % of the torque, {100.0 * LARGEST_ERROR:.0f} % "
-            "are allowed"
-        )
+        missing = could_be_wrong(fit.samples, excess)
         return nothing_learned(n, missing, METHOD, fit, lack)
     relations = lifted_relations(group, bound)
     learned = tuple(

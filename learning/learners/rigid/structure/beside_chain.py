@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +19,7 @@ from isotorque.learning.statistics.added_terms import (
     second_harmonics,
     springs,
 )
-from isotorque.learning.statistics.constant_torques import OR_FRICTION
+from isotorque.learning.statistics.constant_torques import constants_in_words
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]
@@ -160,18 +159,9 @@ def _term(kind: str, added: AddedTerms, reach: Array, deviations: float) -> Term
     allowed = WIDER * quantile(deviations, added.freedom)
     values, vectors = np.linalg.eigh((added.more + added.more.T) / 2.0)
     root = allowed * vectors * np.sqrt(np.maximum(values, 0.0))
-    joints = np.arange(len(reach))
-    said = in_words(added, joints)
+    said = in_words(added, np.arange(len(reach)))
     if kind == CONSTANT:
-        said = "; ".join(_constants(added)) + OR_FRICTION
+        said = constants_in_words(added.outstanding(), added.terms[:, 0], added.errors[:, 0])
     return TermBeside(
         kind, added.change, root, added.largest(allowed, reach), added.p_value, added.misfit, said
     )
-
-
-def _constants(added: AddedTerms) -> Iterator[str]:
-    for j in added.outstanding():
-        size, error = added.terms[j, 0], added.errors[j, 0]
-        yield (
-            f"a constant torque of {size:+.3g} N m on joint {j + 1} (standard error {error:.1g})"
-        )
