@@ -75,9 +75,10 @@ class ExplorationSettings:
         ):
             value = getattr(self, name)
             if not (low <= value <= high) or (name != "turn_angle" and np.isinf(value)):
-                raise InputError(
-                    "exploration settings", name, value, f"a number from {low} to {high}"
-                )
+                accepted = f"a number from {low} to {high}"
+                if np.isinf(high):
+                    accepted = f"a finite number, at least {low}"
+                raise InputError("exploration settings", name, value, accepted)
         if self.target_error is not None and not self.target_error > 0:
             raise InputError(
                 "exploration settings", "target_error", self.target_error, "None or > 0 [N m]"
