@@ -27,7 +27,9 @@ from isotorque.learning.learners.rigid.fitting.gains import (
 )
 from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
 from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
+from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain, beside_chain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import (
+    DEVIATIONS,
     ChainSymmetries,
     chain_symmetries,
 )
@@ -113,6 +115,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
 
     _errors: TorqueErrors | None
     _snapped: tuple[float, SnappedChain] | None
+    _beside: BesideChain | None
     group: None = None  # symmetries follow from the chain; there is nothing to be told
 
     def __init__(
@@ -257,7 +260,20 @@ class RigidChain(TorqueRegressor, SavedLearner):
         >>> RigidChain().fit(q, torque).symmetries().group.order
         8
         """
-        return chain_symmetries(self.fit_, self.errors_, self.snapped(), tolerance)
+        return chain_symmetries(self.fit_, self.errors_, self.snapped(), self.beside(), tolerance)
+
+    def beside(self) -> BesideChain:
+        """What the samples show beside the chain, and what they leave room for.
+
+        Raises
+        ------
+        NotAccepted
+            If no chain was accepted.
+        """
+        self._require_accepted()
+        if self._beside is None:
+            self._beside = beside_chain(self.fit_, DEVIATIONS)
+        return self._beside
 
     @property
     def verdict_(self) -> FitStatus:
@@ -280,9 +296,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         NotAccepted
             If it was not.
         """
-        require_fitted(self)
-        if not self.fit_.verdict.accepted:
-            raise NotAccepted(self.fit_.verdict, self.fit_.remark)
+        self._require_accepted()
         return self.fit_.chain
 
     @property
@@ -292,6 +306,11 @@ class RigidChain(TorqueRegressor, SavedLearner):
         if self._errors is None:
             self._errors = TorqueErrors(self.fit_, self.random_state)
         return self._errors
+
+    def _require_accepted(self) -> None:
+        require_fitted(self)
+        if not self.fit_.verdict.accepted:
+            raise NotAccepted(self.fit_.verdict, self.fit_.remark)
 
     def _asked(self, X: Any) -> Array:
         require_fitted(self)
@@ -328,7 +347,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         return self
 
     def _take(self, fit: ChainFit) -> None:
-        self.fit_, self._errors, self._snapped = fit, None, None
+        self.fit_, self._errors, self._snapped, self._beside = fit, None, None, None
 
     def parameters(self) -> dict[str, Any]:
         """Settings and counters as plain numbers (JSON)."""

@@ -141,18 +141,19 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
             "have been balanced there alone"
         )
         return nothing_learned(samples.n, missing, METHOD)
-    found = learner.symmetries()
-    if found.beside.said:
-        lack = _lack_of_fit(found.beside)
+    beside = learner.beside()
+    if beside.said:
+        lack = _lack_of_fit(beside)
         missing = f"an arm whose torque is rigid gravity: there is {lack.said}"
         return nothing_learned(samples.n, missing, METHOD, lack=lack)
-    if not found.beside.complete and learner.verdict_ is not FitStatus.ROUNDING:
-        given, needed = len(samples.q), found.beside.samples_needed
+    if not beside.complete and learner.verdict_ is not FitStatus.ROUNDING:
+        given, needed = len(samples.q), beside.samples_needed
         missing = (
             f"{needed - given} more samples: {given} different ones were given, which a chain does "
             f"not explain exactly; {needed} show whether noise does, or a spring or a cable"
         )
         return nothing_learned(samples.n, missing, METHOD)
+    found = learner.symmetries()
     excess = float(found.gravity_bounds.max()) / (LARGEST_ERROR * samples.largest_torque)
     if excess > 1.0:
         missing = could_be_wrong(len(samples.q), excess)

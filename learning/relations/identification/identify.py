@@ -91,13 +91,25 @@ def identify(
     configurations, torques = static_samples(q, tau)
     if not snap or not torques.any():
         return identify_by_waves(configurations, torques, noise=noise, snap=snap)
+    waves = None
+    if configurations.shape[1] <= SECOND_OPINION:
+        waves = identify_by_waves(configurations, torques, noise=noise)
+        if _more_than_gravity(waves):
+            return waves
     chain = identify_by_chain(configurations, torques, noise=noise, parents=parents)
-    if chain.decided and configurations.shape[1] > SECOND_OPINION:
-        return chain
-    waves = identify_by_waves(configurations, torques, noise=noise)
-    if not chain.decided:
-        return _without_chain(chain, waves)
-    return _agreed(chain, waves)
+    if chain.decided:
+        return chain if waves is None else _agreed(chain, waves)
+    if waves is None:
+        waves = identify_by_waves(configurations, torques, noise=noise)
+    return _without_chain(chain, waves)
+
+
+def _more_than_gravity(waves: LearnedSymmetries) -> bool:
+    """Whether waves have the last word: they see constants, no gravity, or joints at rest."""
+    lack = waves.lack
+    if waves.fit is None or lack is None:
+        return False
+    return bool(lack.failed or len(lack.offset_joints) or waves.unmoved)
 
 
 def _without_chain(chain: LearnedSymmetries, waves: LearnedSymmetries) -> LearnedSymmetries:
@@ -110,11 +122,9 @@ def _without_chain(chain: LearnedSymmetries, waves: LearnedSymmetries) -> Learne
 
 def _agreed(chain: LearnedSymmetries, waves: LearnedSymmetries) -> LearnedSymmetries:
     """The relations of a chain, if waves do not contradict them."""
-    fit, lack = waves.fit, waves.lack
-    if fit is None or lack is None:
+    fit = waves.fit
+    if fit is None:
         return chain
-    if lack.failed or len(lack.offset_joints) or waves.unmoved:
-        return waves
     group = candidates_of(chain.group)
     whole = fit_group(fit, group)
     if whole.p_value < SIGNIFICANCE:
@@ -125,7 +135,7 @@ def _agreed(chain: LearnedSymmetries, waves: LearnedSymmetries) -> LearnedSymmet
         dataclasses.replace(entry, standard_error=error, p_value=min(entry.p_value, whole.p_value))
         for entry, error in zip(chain.relations, whole.offset_errors, strict=True)
     )
-    return dataclasses.replace(chain, relations=relations, fit=fit, lack=lack, method=BOTH)
+    return dataclasses.replace(chain, relations=relations, fit=fit, lack=waves.lack, method=BOTH)
 
 
 def _common(

@@ -13,7 +13,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     raw_directions,
 )
 from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
-from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain, beside_chain
+from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain
 from isotorque.learning.learners.rigid.structure.expansion import expanded
 from isotorque.learning.learners.rigid.structure.snapping import SnappedChain
 from isotorque.learning.statistics.constant_torques import OR_FRICTION
@@ -103,7 +103,11 @@ class ChainSymmetries:
 
 @single_thread()
 def chain_symmetries(
-    fit: ChainFit, errors: TorqueErrors, snapped: SnappedChain, tolerance: float = 0.0
+    fit: ChainFit,
+    errors: TorqueErrors,
+    snapped: SnappedChain,
+    beside: BesideChain,
+    tolerance: float = 0.0,
 ) -> ChainSymmetries:
     """Derive the group of the snapped chain; bound its relations for the measured arm.
 
@@ -115,6 +119,8 @@ def chain_symmetries(
         Of the same fit.
     snapped : SnappedChain
         Of the same fit.
+    beside : BesideChain
+        Of the same fit, at `DEVIATIONS`.
     tolerance : float
         Also relations that err by no more in any torque of the snapped chain [N m].
 
@@ -133,7 +139,6 @@ def chain_symmetries(
         groups = maximal_groups(potential, tolerance)
     else:
         groups = [exact_symmetries(potential)]
-    beside = beside_chain(fit, DEVIATIONS)
     bounds = _Bounds(fit, errors, snapped, potential, beside)
     bounded, gravity = [], []
     for group in groups:
