@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from isotorque.learning.learners.rigid.fitting.chain_parameters import raw_directions
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
@@ -13,6 +14,8 @@ from isotorque.learning.learners.rigid.fitting.chain_search import (
     search,
 )
 from isotorque.learning.learners.rigid.planning.information import Information
+
+Array = NDArray[np.float64]
 
 FOLDS = 10
 """Parts that are left out in turn."""
@@ -40,17 +43,37 @@ def _reweighted(
     slopes = found.chain.derivatives(samples.q, raw_directions(model.n))
     rows = found.whitening @ slopes.by_parameters()[:, :, model.free]
     leverage = np.sum((rows @ information.factor) ** 2, axis=2)
-    left = np.maximum(1.0 - leverage, 0.0).sum(axis=0)
     rest = samples.torque - slopes.torque
+    levels = estimated_levels(samples, rest, leverage, slopes.stiffness)
+    noisy = samples.with_torque_noise(levels)
+    again = search(noisy, found.chain, model.free_gains, warm=True)
+    return again, noisy
+
+
+def estimated_levels(
+    samples: ChainSamples, rest: Array, leverage: Array, stiffness: Array
+) -> Array:
+    """Standard deviation of the torque error of every joint (n,) [N m], from what a fit leaves.
+
+    Parameters
+    ----------
+    samples : ChainSamples
+        What was fitted.
+    rest : (m, n) array
+        What the fit leaves [N m].
+    leverage : (m, n) array
+        Share of each error that the fit takes.
+    stiffness : (m, n, n) array
+        d torque / d q [N m/rad]: errors of the angles explain a part.
+    """
+    left = np.maximum(1.0 - leverage, 0.0).sum(axis=0)
     square = (rest**2 * samples.weights[:, None]).sum(axis=0)
     pooled = square.sum() / max(left.sum(), 1e-3)
     variance = (square + SHRINKING * pooled * 1e-2) / (left + SHRINKING * 1e-2 + 1e-3)
     if samples.angle_noise.any():
-        leaning = slopes.stiffness * samples.angle_noise
+        leaning = stiffness * samples.angle_noise
         variance = np.maximum(variance - np.mean((leaning**2).sum(axis=2), axis=0), 0.01 * variance)
-    noisy = samples.with_torque_noise(np.sqrt(variance))
-    again = search(noisy, found.chain, model.free_gains, warm=True)
-    return again, noisy
+    return np.asarray(np.sqrt(variance))
 
 
 def held_out_error(samples: ChainSamples, found: SearchedChain, model: ChainModel) -> float:

@@ -1,0 +1,1 @@
+"""A rigid chain with causes beside gravity."""

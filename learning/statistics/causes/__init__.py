@@ -1,0 +1,1 @@
+"""Causes of torques that a model of gravity does not explain: tried, decided, named."""

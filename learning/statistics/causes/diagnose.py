@@ -1,0 +1,214 @@
+"""Diagnosis of a recording: causes of torques beside gravity, named."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from isotorque.learning.learners.rigid.causes.extended_chain import ExtendedChain
+from isotorque.learning.learners.rigid.causes.extensible_chain import AGAIN, ExtensibleChain
+from isotorque.learning.learners.rigid.fitting.chain_parameters import (
+    ChainParameters,
+    checked_parents,
+    serial,
+)
+from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
+from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
+from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
+from isotorque.learning.statistics.causes.extension import Kind
+from isotorque.learning.statistics.causes.selection import Choice, Selection, selected
+from isotorque.learning.statistics.poses import group_poses
+from isotorque.symbolic.common.single_thread import single_thread
+
+Array = NDArray[np.float64]
+
+SPARE_POSES = 2
+"""Poses more than determine a chain, from which causes are looked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cause:
+    """A cause of torques beside gravity.
+
+    Attributes
+    ----------
+    kind : Kind
+    joint : int or None
+        From 0; None for all joints and for a payload.
+    size, standard_error : (k,) arrays
+        Of all its unknowns, in the units of the kind.
+    p_value : float
+        Chance that anything as clear is seen where there is nothing.
+    effect : float
+        Torque that it adds, RMS over the samples, at the joint where that is largest [N m].
+    rivals : tuple of (Kind, int or None)
+        Causes that cannot be told apart with these samples, this one first.
+    """
+
+    kind: Kind
+    joint: int | None
+    size: Array
+    standard_error: Array
+    p_value: float
+    effect: float
+    rivals: tuple[tuple[Kind, int | None], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """What a recording shows beside gravity.
+
+    Attributes
+    ----------
+    causes : tuple of Cause
+        In the order in which they were named.
+    adequate : bool
+        Whether chain and causes explain the samples but for noise.
+    noise : (n,) array
+        Standard deviation of the torque errors, stated or estimated [N m].
+    selection : Selection or None
+        The fit; None where there are too few poses for a diagnosis.
+    missing : str
+        What stands in the way of a diagnosis.
+    """
+
+    causes: tuple[Cause, ...]
+    adequate: bool
+    noise: Array
+    selection: Selection[ExtendedChain] | None
+    missing: str = ""
+
+
+@single_thread()
+def diagnose(
+    q: ArrayLike,
+    tau: ArrayLike,
+    *,
+    directions: ArrayLike | None = None,
+    torque_noise: float | Sequence[float] | None = None,
+    angle_noise: float | Sequence[float] = 0.0,
+    parents: Sequence[int] | None = None,
+    known: Sequence[ChainParameters] = (),
+    random_state: int = 0,
+) -> Diagnosis:
+    """Name what explains a recording beside the gravity of a rigid chain.
+
+    Parameters
+    ----------
+    q, tau : (N, n) array_like
+        Rows: configurations [rad] and torques [N m].
+    directions : (N, n) array_like, optional
+        Signs of the last motion of every joint before the arm came to rest; 0 where not known.
+    torque_noise : float or sequence of float, optional
+        Standard deviation of the torque error [N m]; estimated for every joint by default.
+    angle_noise : float or sequence of float
+        Standard deviation of the angle error [rad].
+    parents : sequence of int, optional
+        Joint that carries each joint, -1 for the base; in series by default.
+    known : sequence of ChainParameters
+        Chains to start from, where some were fitted before.
+    random_state : int
+        Seed of the random starts.
+
+    Returns
+    -------
+    Diagnosis
+
+    Raises
+    ------
+    InputError
+        If the arrays do not fit together.
+
+    Notes
+    -----
+    The kinematics are unknown; zeros of encoders, the direction of gravity and a constant payload
+    are no causes: a chain holds them itself. See `selected` for the decision.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> q = rng.uniform(-2.0, 2.0, (40, 2))
+    >>> lower = 6.1 * np.cos(q[:, 0] + q[:, 1])
+    >>> tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
+    >>> tau += 0.02 * rng.normal(size=tau.shape)
+    >>> diagnose(q, tau).causes
+    ()
+    >>> cause, = diagnose(q, tau + [0.0, 0.3]).causes
+    >>> print(cause.kind, cause.joint, cause.size.round(2))
+    offset 1 [0.3]
+    """
+    configurations, torques = np.asarray(q, dtype=float), np.asarray(tau, dtype=float)
+    sides = None if directions is None else np.sign(np.asarray(directions, dtype=float))
+    configurations, torques, sides = _by_pose_and_side(configurations, torques, sides)
+    m, n = configurations.shape
+    stated = 0.0 if torque_noise is None else torque_noise
+    samples = ChainSamples(
+        configurations,
+        torques,
+        noise_by_joint("diagnose", "torque_noise", stated, n),
+        noise_by_joint("diagnose", "angle_noise", angle_noise, n),
+        np.ones(m),
+    )
+    family = ChainModel(
+        serial(n) if parents is None else checked_parents(parents, n),
+        np.ones(n),
+        np.zeros(n, dtype=bool),
+        (),
+    )
+    given, needed = samples.poses, poses_needed(family) + SPARE_POSES
+    if given < needed or not torques.any():
+        missing = f"{needed - given} more poses: {given} different ones were given"
+        if not torques.any():
+            missing = "samples with a torque"
+        return Diagnosis((), False, samples.torque_noise, None, missing)
+    model = ExtensibleChain(
+        samples,
+        family,
+        sides,
+        torque_noise is not None,
+        np.random.default_rng(random_state),
+    )
+    alone = model.alone(known)
+    model = model.reweighted(alone)
+    if not model.noise_known:
+        alone = model.alone([alone.chain], AGAIN)
+    selection = selected(model, alone)
+    causes = tuple(_cause(selection, choice) for choice in selection.choices)
+    noise = selection.model.noise
+    return Diagnosis(causes, selection.adequate, noise, selection)
+
+
+def _by_pose_and_side(
+    q: Array, tau: Array, sides: Array | None
+) -> tuple[Array, Array, Array | None]:
+    """One sample per pose, and per direction of approach where these are known."""
+    poses = group_poses(q)
+    if not poses.repeated:
+        return q, tau, sides
+    if sides is None:
+        return poses.configurations(q), poses.means(tau), None
+    keys = np.column_stack([poses.label, sides])
+    _, first, label = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(first), dtype=np.intp)
+    rank[order] = np.arange(len(first))
+    label = rank[label.ravel()]
+    count = np.bincount(label).astype(float)
+    torques = np.stack([np.bincount(label, tau[:, j]) / count for j in range(tau.shape[1])], axis=1)
+    at = poses.configurations(q)[poses.label[first[order]]]
+    return at, torques, sides[first[order]]
+
+
+def _cause(selection: Selection[ExtendedChain], choice: Choice) -> Cause:
+    extension = choice.extension
+    fit = selection.fit
+    estimates = [fit.estimate(term) for term in extension.terms if term in fit.terms]
+    size = np.concatenate([value for value, _ in estimates])
+    error = np.concatenate([error for _, error in estimates])
+    added = fit.effect([term for term in extension.terms if term in fit.terms])
+    effect = float(np.sqrt(np.mean(added**2, axis=0)).max())
+    rivals = tuple((rival.kind, rival.joint) for rival in choice.rivals)
+    return Cause(extension.kind, extension.joint, size, error, choice.p_value, effect, rivals)

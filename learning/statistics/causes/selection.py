@@ -1,0 +1,259 @@
+"""Decision which causes a recording shows: one after the other, by likelihood ratio."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Generic
+
+import numpy as np
+from scipy import stats
+
+from isotorque.learning.statistics.causes.candidates import candidates, explained_to_first_order
+from isotorque.learning.statistics.causes.extensible_model import ExtendedFit, ExtensibleModel, F
+from isotorque.learning.statistics.causes.extension import Extension, Kind, Term
+
+FAMILY_WISE = 0.01
+"""Chance that anything is named where there is nothing, over all candidates."""
+TIED = 6.0
+"""Candidates whose scores (2 log Bayes factor) differ by less cannot be told apart."""
+MOST = 3
+"""Causes that are named at most."""
+LOOKED_AT = 4
+"""Best candidates that are fitted from other starts as well, and whose chains the model without
+causes is fitted from again: it must be as well optimised as they are."""
+OTHER_STARTS = 4
+WORTHWHILE = 6.0
+"""Where a model explains its samples, only causes that would take so much from the cost are
+fitted: less is never significant."""
+ADEQUATE, ADEQUATE_SHARE = 1e-4, 0.02
+"""A model explains its samples: chance of the misfit where noise is known, else share of torque."""
+NEGLIGIBLE = 1e-6
+"""Causes below this share of the largest torque are where motions ended."""
+SAME = 3.0
+"""A gain is a wrong sign if -1 lies within so many standard errors, ..."""
+NEAR = 0.05
+"""... or within this."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate(Generic[F]):
+    """A cause with a fit that contains it.
+
+    Attributes
+    ----------
+    extension : Extension
+    fit : ExtendedFit
+    degrees : int
+        Unknowns that it adds.
+    ratio : float
+        Twice the logarithm of the likelihood ratio.
+    score : float
+        The same less ``degrees log N`` (Schwarz).
+    log_p : float
+        Logarithm of the chance of such a ratio without the cause.
+    """
+
+    extension: Extension
+    fit: F
+    degrees: int
+    ratio: float
+    score: float
+    log_p: float
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """A cause that was chosen.
+
+    Attributes
+    ----------
+    extension : Extension
+    p_value : float
+        Without the cause, over all candidates (Bonferroni).
+    rivals : tuple of Extension
+        Causes that explain the samples as well, this one first.
+    """
+
+    extension: Extension
+    p_value: float
+    rivals: tuple[Extension, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Selection(Generic[F]):
+    """Result of a selection.
+
+    Attributes
+    ----------
+    model : ExtensibleModel
+        With the noise as it was estimated last.
+    fit : ExtendedFit
+        With all causes that were chosen.
+    choices : tuple of Choice
+    adequate : bool
+        Whether nothing is left to be explained.
+    """
+
+    model: ExtensibleModel[F]
+    fit: F
+    choices: tuple[Choice, ...]
+    adequate: bool
+
+
+def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
+    """Choose the causes that samples show beside a model.
+
+    Parameters
+    ----------
+    model : ExtensibleModel
+    null : ExtendedFit
+        Of the model alone.
+
+    Notes
+    -----
+    Every cause is added to the model and fitted with it. The best score counts; of those that
+    cannot be told apart from it the one with the fewest unknowns; it is chosen if its likelihood
+    ratio is significant at `FAMILY_WISE` over all candidates (chi-square where the noise is known,
+    else F). Where a model has many minima, comparing the best of many candidates with one minimum
+    of the model alone finds causes in clean samples: the model alone is therefore fitted again
+    from the chains of the best candidates. After `MOST` causes, or when none is significant, those
+    that the later ones made superfluous are dropped.
+    """
+    fit = null
+    choices: list[Choice] = []
+    for _ in range(MOST):
+        chosen = [choice.extension for choice in choices]
+        fit, found, tried = _best(model, fit, chosen)
+        if not found:
+            break
+        best, rivals = _simplest(found)
+        log_p = best.log_p + np.log(tried)
+        if log_p >= np.log(FAMILY_WISE) or best.score <= 0.0:
+            break
+        largest = float(np.abs(model.torque).max())
+        if np.abs(best.fit.effect(best.extension.terms)).max() < NEGLIGIBLE * largest:
+            break
+        named = tuple(_renamed(c.extension, c.fit) for c in (best, *rivals))
+        choices.append(Choice(named[0], float(np.exp(log_p)), named))
+        fit = model.refitted(best.fit.terms, best.fit, thorough=True)
+        model = model.reweighted(fit)
+        fit = model.refitted(fit.terms, fit, thorough=True)
+        if best.extension.kind is Kind.PAYLOAD:
+            break
+    fit, choices = _without_superfluous(model, fit, choices)
+    return Selection(model, fit, tuple(choices), is_adequate(model, fit))
+
+
+def is_adequate(model: ExtensibleModel[F], fit: F) -> bool:
+    """Whether a fit explains the samples but for noise."""
+    if model.noise_known:
+        return bool(stats.chi2.sf(fit.cost, fit.spare) > ADEQUATE)
+    left, size = np.sqrt(np.mean(fit.rest**2)), np.sqrt(np.mean(model.torque**2))
+    return bool(left < ADEQUATE_SHARE * size)
+
+
+def _best(
+    model: ExtensibleModel[F], fit: F, chosen: Sequence[Extension]
+) -> tuple[F, list[Candidate[F]], int]:
+    """The fit without more causes, candidates by score, and how many were tried."""
+    adequate = is_adequate(model, fit)
+    possible = candidates(model, fit, chosen, adequate)
+    taken, degrees = explained_to_first_order(fit, possible)
+    room = fit.spare - degrees >= model.q.shape[1]
+    possible_ones = [
+        (extension, int(df))
+        for extension, df, enough in zip(possible, degrees, room, strict=True)
+        if df and enough
+    ]
+    looked_at = possible_ones
+    if adequate:
+        gain = {id(e): t for e, t in zip(possible, taken, strict=True)}
+        scale = 1.0 if model.noise_known else fit.cost / fit.spare
+        looked_at = [(e, df) for e, df in possible_ones if gain[id(e)] > WORTHWHILE * scale]
+    fits: list[tuple[Extension, int, F]] = []
+    for extension, df in looked_at:
+        terms = _with(fit.terms, extension)
+        near = [model.refitted(terms, fit)]
+        if not adequate and extension.kind is Kind.GAIN and extension.joint is not None:
+            near += model.others(extension, terms, OTHER_STARTS)
+        plausible = [found for found in near if found.plausible()]
+        if plausible:
+            fits.append((extension, df, min(plausible, key=lambda f: f.cost)))
+    fits.sort(key=lambda entry: entry[2].cost + entry[1] * np.log(model.q.size))
+    for i, (extension, df, found) in enumerate(fits[:LOOKED_AT]):
+        others = model.others(extension, found.terms, OTHER_STARTS)
+        better = [other for other in others if other.plausible() and other.cost < found.cost]
+        if better:
+            fits[i] = (extension, df, min(better, key=lambda f: f.cost))
+    for _, _, found in fits[:LOOKED_AT]:
+        again = model.refitted(fit.terms, found, thorough=True)
+        if again.cost < fit.cost and again.plausible():
+            fit = again
+    scored = [_scored(model, fit, *entry) for entry in fits]
+    scored.sort(key=lambda candidate: -candidate.score)
+    return fit, scored, len(possible_ones)
+
+
+def _with(terms: Sequence[Term], extension: Extension) -> tuple[Term, ...]:
+    return (*terms, *(term for term in extension.terms if term not in terms))
+
+
+def _scored(
+    model: ExtensibleModel[F], null: F, extension: Extension, df: int, fit: F
+) -> Candidate[F]:
+    """Likelihood ratio, score and chance of a cause."""
+    without, cost = null.cost, max(min(fit.cost, null.cost), 1e-300)
+    if model.noise_known:
+        ratio = without - cost
+        log_p = float(stats.chi2.logsf(max(ratio, 0.0), df))
+    else:
+        left = max(null.spare - df, 1)
+        ratio = null.spare * float(np.log(max(without, 1e-300) / cost))
+        log_p = float(stats.f.logsf((without - cost) / df / (cost / left), df, left))
+    if not np.isfinite(log_p):
+        log_p = -ratio / 2.0
+    score = ratio - df * float(np.log(model.q.size))
+    return Candidate(extension, fit, df, ratio, score, log_p)
+
+
+def _simplest(found: Sequence[Candidate[F]]) -> tuple[Candidate[F], list[Candidate[F]]]:
+    """Of those that cannot be told apart, the one with the fewest unknowns; and the others."""
+    near = [c for c in found if found[0].score - c.score < TIED]
+    near.sort(key=lambda c: (c.degrees, -c.score))
+    return near[0], near[1:]
+
+
+def _renamed(extension: Extension, fit: ExtendedFit) -> Extension:
+    """A gain of -1 is a wrong sign, of the torque or of the angle."""
+    if extension.joint is None:
+        return extension
+    if extension.kind is Kind.GAIN:
+        value, error = fit.estimate(extension.terms[0])
+        if abs(value[0] + 1.0) < max(SAME * error[0], NEAR):
+            return replace(extension, kind=Kind.SIGN)
+    return extension
+
+
+def _without_superfluous(
+    model: ExtensibleModel[F], fit: F, choices: list[Choice]
+) -> tuple[F, list[Choice]]:
+    """Drop causes that are not significant beside the others."""
+    while len(choices) > 1:
+        tried = len(candidates(model, fit, [], is_adequate(model, fit)))
+        for i in range(len(choices)):
+            kept = choices[:i] + choices[i + 1 :]
+            terms: tuple[Term, ...] = ()
+            for choice in kept:
+                terms = _with(terms, choice.extension)
+            if len(terms) == len(fit.terms):
+                break
+            without = model.refitted(terms, fit, thorough=True)
+            df = without.spare - fit.spare
+            found = _scored(model, without, choices[i].extension, max(df, 1), fit)
+            if found.log_p + np.log(tried) >= np.log(FAMILY_WISE):
+                break
+        else:
+            return fit, choices
+        fit, choices = without if len(terms) < len(fit.terms) else fit, kept
+    return fit, choices
