@@ -97,7 +97,7 @@ def test_rows_of_one_pose_count_once_but_from_either_side():
     assert (found.causes[0].kind, found.causes[0].joint) == (Kind.FRICTION, 0)
     again = diagnose(np.repeat(q, 5, axis=0), np.repeat(tau, 5, axis=0))
     once = diagnose(q, tau)
-    assert again.noise == pytest.approx(once.noise)
+    assert again.noise == pytest.approx(once.noise, rel=0.05)  # not smaller by the root of five
 
 
 def test_too_few_poses_are_told():
