@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 
 class Status(StrEnum):
-    """Status of a claim, from the strongest to the weakest, and refuted."""
+    """Status of a claim, from the strongest to the weakest, not tested, and refuted."""
 
     PROVED = "proved"
     BOUNDED = "bounded"
     TESTED = "tested"
+    UNTESTED = "not tested"
     REFUTED = "refuted"
 
 
@@ -31,9 +32,10 @@ class Verdict:
     status : Status
         ``proved``: in exact arithmetic, for every configuration. ``bounded``: a bound that holds
         for every configuration lies within the tolerance. ``tested``: no bound, but a search
-        found nothing beyond the tolerance. ``refuted``: the claim is false.
+        found nothing beyond the tolerance, or measurements that would have shown more contradict
+        nothing. ``not tested``: measurements that cannot tell. ``refuted``: the claim is false.
     passed : bool
-        Whether the claim stands within the tolerance.
+        Whether the claim stands within the tolerance; what was not tested does not pass.
     worst_error : float
         For ``proved`` and ``bounded`` the bound, otherwise the largest error found; in the unit
         of the claim, N m unless it says otherwise. NaN, and null in JSON, where the claim is
@@ -43,6 +45,8 @@ class Verdict:
         the claim is not about single configurations.
     rmse : float or None
         Root mean square error, where the claim is about one.
+    reason : str
+        By what means it was judged, or what is missing; empty where the status says it.
 
     Examples
     --------
@@ -58,15 +62,18 @@ class Verdict:
     worst_error: float
     counterexample: NDArray[np.float64] | None = None
     rmse: float | None = None
+    reason: str = ""
 
     @property
     def passed(self) -> bool:
         """Whether the claim stands."""
-        return self.status is not Status.REFUTED
+        return self.status not in (Status.REFUTED, Status.UNTESTED)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the verdict as the command line prints it; with ``rmse`` where it has one."""
-        rmse = {} if self.rmse is None else {"rmse": float(self.rmse)}
+        """Return the verdict as the command line prints it; rmse and reason where it has them."""
+        more: dict[str, Any] = {} if self.rmse is None else {"rmse": float(self.rmse)}
+        if self.reason:
+            more["reason"] = self.reason
         return {
             "claim": self.claim,
             "status": str(self.status),
@@ -75,7 +82,7 @@ class Verdict:
             "counterexample": None
             if self.counterexample is None
             else [float(x) for x in self.counterexample],
-            **rmse,
+            **more,
         }
 
     def __str__(self) -> str:
@@ -87,7 +94,8 @@ class Verdict:
         if self.counterexample is not None:
             said += ["at q = (" + ", ".join(f"{x:.6g}" for x in self.counterexample) + ")"]
         figures = f" ({', '.join(said)})" if said else ""
-        return f"{self.status}: {self.claim}{figures}"
+        reason = f"; {self.reason}" if self.reason else ""
+        return f"{self.status}: {self.claim}{figures}{reason}"
 
 
 def all_passed(verdicts: Iterable[Verdict]) -> bool:

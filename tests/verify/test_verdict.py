@@ -12,7 +12,13 @@ from isotorque.verify.verdict import Status, Verdict, all_passed
 
 @pytest.mark.parametrize(
     ("status", "passed"),
-    [("proved", True), ("bounded", True), ("tested", True), ("refuted", False)],
+    [
+        ("proved", True),
+        ("bounded", True),
+        ("tested", True),
+        ("not tested", False),
+        ("refuted", False),
+    ],
 )
 def test_json_form(status, passed):
     q = None if passed else np.array([0.5, -1.0])
@@ -32,3 +38,10 @@ def test_all_passed():
     assert all_passed([])
     assert all_passed([good, good])
     assert not all_passed([good, bad])
+
+
+def test_the_reason_is_told_where_there_is_one():
+    verdict = Verdict("a", Status.UNTESTED, 0.5, reason="one pose only")
+    assert str(verdict) == "not tested: a (worst error 0.5); one pose only"
+    assert verdict.to_json()["reason"] == "one pose only"
+    assert "reason" not in Verdict("a", Status.TESTED, 0.5).to_json()
