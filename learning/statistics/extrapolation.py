@@ -117,7 +117,8 @@ def extrapolation(
     size = np.abs(answers).max(axis=1)
     size = np.where(np.isfinite(size), size, np.inf)
     far = int(size.argmax())
-    error = _standard_errors(learner, points[beyond][:256])
+    far_errors = standard_errors(learner, points[beyond][:256]) if beyond.any() else None
+    error = float("nan") if far_errors is None else float(np.median(np.max(far_errors, axis=1)))
     return Extrapolation(
         low,
         high,
@@ -129,17 +130,34 @@ def extrapolation(
     )
 
 
-def _standard_errors(learner: Any, points: Array) -> float:
-    if not len(points):
-        return float("nan")
+def standard_errors(learner: Any, q: ArrayLike) -> Array | None:
+    """Standard errors (m, n) [N m] that a model states at configurations q; None: it states none.
+
+    Parameters
+    ----------
+    learner
+        Fitted; ``standard_error`` or ``predict(q, return_std=True)`` is used where it is there.
+    q : (m, n) array_like
+        Configurations [rad].
+
+    Examples
+    --------
+    >>> from isotorque import EquivariantTrigonometric
+    >>> q = np.linspace(-3.0, 3.0, 12)[:, None]
+    >>> arm = EquivariantTrigonometric().fit(q, np.cos(q))
+    >>> standard_errors(arm, q).shape, standard_errors(object(), q)
+    ((12, 1), None)
+    """
     if hasattr(learner, "standard_error"):
-        errors = learner.standard_error(points)
-    elif "return_std" in getattr(type(learner).predict, "__code__", _Unknown).co_varnames:
-        errors = learner.predict(points, return_std=True)[1]
+        errors = learner.standard_error(q)
+    elif "return_std" in _arguments(learner):
+        errors = learner.predict(q, return_std=True)[1]
     else:
-        return float("nan")
-    return float("nan") if errors is None else float(np.median(np.max(errors, axis=1)))
+        return None
+    return None if errors is None else np.asarray(errors, dtype=float)
 
 
-class _Unknown:
-    co_varnames = ()
+def _arguments(learner: Any) -> tuple[str, ...]:
+    """Names in ``predict`` of a model."""
+    code = getattr(getattr(type(learner), "predict", None), "__code__", None)
+    return () if code is None else code.co_varnames

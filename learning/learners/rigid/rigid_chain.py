@@ -307,6 +307,12 @@ class RigidChain(TorqueRegressor, SavedLearner):
             self._errors = TorqueErrors(self.fit_, self.random_state)
         return self._errors
 
+    @property
+    def seen_range_(self) -> tuple[Array, Array]:
+        """Lowest and highest angle of every joint among the samples, (n,) each [rad]."""
+        require_fitted(self)
+        return self.fit_.samples.q.min(axis=0), self.fit_.samples.q.max(axis=0)
+
     def _require_accepted(self) -> None:
         require_fitted(self)
         if not self.fit_.verdict.accepted:

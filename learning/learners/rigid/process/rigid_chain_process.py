@@ -282,6 +282,12 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
         return np.asarray(np.sqrt(variance + means.var(axis=0)))
 
     @property
+    def seen_range_(self) -> tuple[Array, Array]:
+        """Lowest and highest angle of every joint among the samples, (n,) each [rad]."""
+        require_fitted(self)
+        return self._q.min(axis=0), self._q.max(axis=0)
+
+    @property
     def accepted_models(self) -> tuple[ChainWithProcesses, ...]:
         """The models whose mean is predicted.
 
