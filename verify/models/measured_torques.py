@@ -53,6 +53,36 @@ class Disagreement:
     rmse_degrees: float
 
 
+MUCH_BETTER = 3.0
+"""Times that another sign or unit must fit better to be suspected."""
+
+
+def misread_units(rmse: float, opposite: float, degrees: float) -> str | None:
+    """Say that torques have the opposite sign or angles are degrees, if that fits far better.
+
+    Parameters
+    ----------
+    rmse, opposite, degrees
+        Disagreement as it is, with the opposite sign of all torques, with angles taken for degrees
+        [N m].
+
+    Examples
+    --------
+    >>> print(misread_units(2.0, 1.9, 0.01))
+    with angles in degrees that would be 0.01 N m: q is in radians
+    >>> misread_units(2.0, 1.9, 1.8) is None
+    True
+    """
+    if MUCH_BETTER * opposite < rmse:
+        return (
+            f"with the opposite sign of all torques that would be {opposite:.4g} N m:"
+            " tau is the torque that holds the arm, not the one that gravity exerts"
+        )
+    if MUCH_BETTER * degrees < rmse:
+        return f"with angles in degrees that would be {degrees:.4g} N m: q is in radians"
+    return None
+
+
 def disagreement(
     q: ArrayLike, torque: ArrayLike, gravity: GravityModel, *, leave_out: ArrayLike | None = None
 ) -> Disagreement:

@@ -188,7 +188,7 @@ def verify_model(
     error 0.01)
     """
     n = gravity.n
-    predict = _checked(model.predict if hasattr(model, "predict") else model, n)
+    predict = checked_predictions(model.predict if hasattr(model, "predict") else model)
     everywhere = np.tile([-np.pi, np.pi], (n, 1))
     box = everywhere if limits is None else finite_limits(limits)
     active = np.array([name not in gravity.free_joints for name in gravity.joint_names])
@@ -269,7 +269,9 @@ def torque_rmse(errors: ArrayLike, active: ArrayLike | None = None) -> float:
     return float(np.sqrt(np.mean(np.sum(values**2, axis=1)) / joints)) if values.size else 0.0
 
 
-def _checked(predict: Predict, n: int) -> Callable[[Array], Array]:
+def checked_predictions(predict: Predict) -> Callable[[Array], Array]:
+    """A model whose predictions are refused where they are no torques (m, n) or not finite."""
+
     def checked(q: Array) -> Array:
         torque = np.asarray(predict(q), dtype=float)
         if torque.shape != q.shape:

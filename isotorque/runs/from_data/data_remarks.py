@@ -10,14 +10,12 @@ from isotorque.learning.files.csv_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation
 from isotorque.learning.statistics.constant_torques import OR_FRICTION
 from isotorque.symbolic.robots.load_robot import Robot
-from isotorque.verify.models.measured_torques import Disagreement
+from isotorque.verify.models.measured_torques import Disagreement, misread_units
 
 CONSTANT = 2.0
 """Times that constants of the joints must lower a disagreement to be told."""
 SYSTEMATIC = 2.0
 """Times the held-out error from which a disagreement is no accident of single samples."""
-MUCH_BETTER = 3.0
-"""Times that another sign or unit must fit better to be suspected."""
 
 
 def outlier_remarks(tried: CrossValidation | None, dropped: bool, count: int) -> tuple[str, ...]:
@@ -71,15 +69,9 @@ def analytic_remarks(
         if times > SYSTEMATIC:
             said += f"; {times:.3g} times the error on held out rows: systematic"
     remarks = [said]
-    if MUCH_BETTER * compared.rmse_opposite < compared.rmse:
-        remarks.append(
-            f"with the opposite sign of all torques that would be {compared.rmse_opposite:.4g} N m:"
-            " tau is the torque that holds the arm, not the one that gravity exerts"
-        )
-    elif MUCH_BETTER * compared.rmse_degrees < compared.rmse:
-        remarks.append(
-            f"with angles in degrees that would be {compared.rmse_degrees:.4g} N m: q is in radians"
-        )
+    misread = misread_units(compared.rmse, compared.rmse_opposite, compared.rmse_degrees)
+    if misread:
+        remarks.append(misread)
     far = _outside(samples, robot)
     if far:
         remarks.append(f"{far} rows lie outside the joint limits of {robot.name}")
