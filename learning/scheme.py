@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from isotorque.learning.arm import Outcome, OutcomeKind, Playback, ProfileArm
 from isotorque.learning.discovery.home_torque import Search, find_home_torque, measure_home_torque
-from isotorque.learning.discovery.motor_babbling import babble
+from isotorque.learning.discovery.motor_babbling import DOUBLED, GROWTH, STEPS, babble
+from isotorque.learning.discovery.telling_torques import TellingTorques
 from isotorque.learning.discovery.torque_profile_discovery import (
     DiscoverySettings,
     choose_target,
@@ -196,6 +197,7 @@ class Scheme:
         self.exploration: Exploration | None = None
         self.make_learner = make_learner
         self._given, self._use = group, use_symmetries
+        self._telling = TellingTorques(self.chain, self.static_torques, self.home, rng)
         self._seen: list[Array] = []
         self._trajectories: list[Array] = []
         self._settled_q: list[Array] = []
@@ -269,8 +271,10 @@ class Scheme:
             self.rng,
             settings.babbling,
             self._search(),
-            self._wants_more_poses,
+            self._wanted,
             always=self.settings.guided,
+            most_wanted=settings.telling or STEPS,
+            growth=GROWTH if settings.telling else DOUBLED,
         )
         self.home_torque = yield from self._taken(babbling)
         self.arm.go_home()
@@ -309,10 +313,14 @@ class Scheme:
             self._take(outcome)
             yield Discovery(None, outcome, None, outcome.kind is OutcomeKind.SETTLED)
 
-    def _wants_more_poses(self, scale: Array) -> bool:
-        """Whether a chain lacks poses, once the torque scale of every joint is known."""
+    def _wanted(self, centre: Array, scale: Array) -> Array | None:
+        """Torque that a chain lacks, once the torque scale of every joint is known."""
         self.chain.unloaded = scale == 0.0
-        return self._many_joints and self.chain.learner is None
+        if self.settings.discovery.telling:
+            return self._telling(centre, scale)
+        if self._many_joints and self.chain.learner is None:
+            return self._telling.at_random(centre, scale)
+        return None
 
     def _lead(self) -> Iterator[Discovery]:
         """Lead the arm about until its samples show the relations."""

@@ -23,12 +23,18 @@ VISIBLE_MOTION = 0.1
 SHRINKAGE, SHRINKINGS = 16.0, 10
 """A first torque that carries a joint away is made smaller by this factor, so often at most."""
 
-MOST_DOUBLINGS = 80
+MOST_DOUBLINGS, DOUBLED = 80, 2.0
+
+AIM = 0.2
+"""Torques grow to where the motion seen so far lets expect this angle [rad]."""
+
+GROWTH = 16.0
+"""Factor between two torques of a joint at most, where few steps are wanted."""
 
 TRIES_PER_RAY = 8
 
-STEPS, WIDTH = 24, 3.0
-"""Torques about home, and how many times the scale of each joint they go from it."""
+STEPS = 24
+"""Torques about home before the rays, if they are wanted."""
 
 
 def babble(
@@ -36,8 +42,11 @@ def babble(
     rng: np.random.Generator,
     tries: int,
     search: Callable[[ProfileArm], Search] = find_home_torque,
-    scaled: Callable[[Array], bool] | None = None,
+    wanted: Callable[[Array, Array], Array | None] | None = None,
     always: bool = False,
+    *,
+    most_wanted: int = STEPS,
+    growth: float = DOUBLED,
 ) -> Generator[Outcome, None, Array | None]:
     """Find out which torques the arm can hold, knowing nothing: yield every outcome.
 
@@ -48,15 +57,20 @@ def babble(
     rng
         Source of randomness.
     tries
-        Torques applied after the scale of each joint has been found.
+        Torques applied along the rays.
     search
         Finds the home torque of an arm that does not rest under a minute torque.
-    scaled
-        ``scaled(torque scales)``, zero for joints that hold none: before the rays, torques about
-        home that move all joints at once are tried while it says so, ``STEPS`` of them at most.
+    wanted
+        ``wanted(home torque, torque scales)``, zero for joints that hold none: the torque to try
+        before the rays, or None for no more of them.
     always
         Whether ``search`` is asked first, even of an arm that rests under a minute torque: one
         that rests but falls under any other torque is not seen by that.
+    most_wanted
+        So many of these torques are tried at most.
+    growth
+        Factor between two torques of a joint at most while it has not visibly moved; 2 doubles
+        them.
 
     Yields
     ------
@@ -71,12 +85,15 @@ def babble(
 
     Notes
     -----
-    Joint by joint, a minute torque is added to the home torque and doubled until the arm visibly
-    moves: that is the scale. What is minute for one arm carries another one away: then the torque
-    is made smaller until the joint rests under it. A joint that neither rests nor moves far under
-    its torque has no stiffness (a vertical first axis) and is driven no further. Then random rays
-    from the home torque are followed, each to where the arm gives way: in growing steps, then by
-    bisection. So the set of static torques becomes known up to its boundary.
+    Joint by joint, a minute torque is added to the home torque and made larger until the arm
+    visibly moves: that is the scale. It grows by no more than ``growth``, and to no more than what
+    moves the joint by 0.2 rad if it goes on as it did; noise of the angle only makes that less. One
+    that carries the arm away is followed by a smaller one. What is minute for one arm carries
+    another one away: then the torque is made smaller until the joint rests under it. A joint that
+    neither rests nor moves far under its torque has no stiffness (a vertical first axis) and is
+    driven no further. Then random rays from the home torque are followed, each to where the arm
+    gives way: in growing steps, then by bisection. So the set of static torques becomes known up to
+    its boundary.
     """
     n = len(arm.q)
     size, centre = np.zeros(n), np.zeros(n)
@@ -91,12 +108,13 @@ def babble(
         centre, begun = found, None
         arm.go_home()
     for joint in range(n):
-        yield from _find_scale(arm, joint, centre, size, begun)
+        yield from _find_scale(arm, joint, centre, size, begun, growth)
         begun = None
-    for _ in range(STEPS):
-        if scaled is None or not scaled(size) or not size.any():
+    for _ in range(most_wanted):
+        torque = None if wanted is None else wanted(centre, size)
+        if torque is None or not size.any():
             break
-        yield arm.apply(centre + size * rng.uniform(-WIDTH, WIDTH, n))
+        yield arm.apply(torque)
     left = tries
     while left > 0 and size.any():
         direction = rng.normal(size=n)
@@ -118,7 +136,12 @@ def babble(
 
 
 def _find_scale(
-    arm: ProfileArm, joint: int, centre: Array, size: Array, begun: _Begun | None
+    arm: ProfileArm,
+    joint: int,
+    centre: Array,
+    size: Array,
+    begun: _Begun | None,
+    growth: float,
 ) -> Iterator[Outcome]:
     """Set ``size[joint]`` to a torque that visibly moves the joint; leave 0 where none holds.
 
@@ -126,7 +149,8 @@ def _find_scale(
     """
     torque = np.zeros(len(size))
     torque[joint] = FIRST_TORQUE
-    shrinkings = 0
+    home = float(arm.q[joint] if begun is None else begun[0][joint])
+    factor, shrinkings = growth, 0
     for _ in range(MOST_DOUBLINGS):
         if begun is None:
             before = np.array(arm.q, dtype=float)
@@ -141,7 +165,13 @@ def _find_scale(
             size[joint] = torque[joint]
             if moved:
                 break
-            torque *= 2
+            far = abs(float(wrap(outcome.q[joint] - home)))
+            factor = min(factor, max(DOUBLED, AIM / max(far, AIM / growth)))
+            torque *= factor
+        elif size[joint] and factor > DOUBLED:
+            factor = max(DOUBLED, factor**0.5)
+            torque[joint] = factor * size[joint]
+            arm.go_home()
         else:
             moved |= outcome.kind is OutcomeKind.LIMIT
             if size[joint] or not moved or shrinkings == SHRINKINGS:

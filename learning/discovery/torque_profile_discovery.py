@@ -33,6 +33,10 @@ class DiscoverySettings:
     babbling : int
         Torques tried at first to learn which the arm can hold (the SST); places at first, where it
         holds none and is guided.
+    telling : int
+        Torques at most, before these, that are chosen to tell most about the arm until it knows
+        its relations; joints are moved in few steps then. It is for sensors with errors. 0: torques
+        of joints are doubled step by step, and an arm of many joints is moved at random.
     guided_places : int
         Places that a guided arm is taken to between two looks at the relations.
     away_from_zero : float
@@ -47,6 +51,7 @@ class DiscoverySettings:
     profiles_per_torque: int = 16
     patience: int = 8
     babbling: int = 120
+    telling: int = 0
     guided_places: int = 60
     away_from_zero: float = 0.05
     same_angle: float = 1e-3
@@ -56,6 +61,8 @@ class DiscoverySettings:
         for name in ("profiles_per_torque", "patience", "babbling", "guided_places"):
             if getattr(self, name) < 1:
                 raise InputError("discovery", name, getattr(self, name), "at least 1")
+        if self.telling < 0:
+            raise InputError("discovery", "telling", self.telling, "at least 0")
         if not 0 < self.away_from_zero < 1:
             raise InputError("discovery", "away_from_zero", self.away_from_zero, "0 to 1")
         if not self.same_angle > 0:

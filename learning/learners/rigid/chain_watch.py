@@ -226,14 +226,15 @@ class ChainWatch:
         q, _ = self.samples
         return self.unloaded & (np.ptp(q, axis=0) < ONE_POSE)
 
-    def _learned(self) -> tuple[Array, Array]:
+    @property
+    def learned(self) -> tuple[Array, Array]:
         """The samples as they are learned: at any angle of a joint that gravity does not reach."""
         q, torque = self.samples
         return np.where(self._taken_free(), self._elsewhere[: self.poses], q), torque
 
     def _final(self, found: RigidChain) -> RigidChain:
         """The chain of all samples, with right angles and without levers where they allow it."""
-        q, torque = self._learned()
+        q, torque = self.learned
         rows = np.unique(np.linspace(0, self.poses - 1, MOST_ROWS).round().astype(int))
         final = self._new()
         final.fit(q[rows], torque[rows])
@@ -251,7 +252,7 @@ class ChainWatch:
         return RigidChain(self.parents, max_starts=STARTS, random_state=self.random_state)
 
     def _search(self) -> None:
-        q, torque = self._learned()
+        q, torque = self.learned
         if self._stands:  # a better fit of the same chain
             done, last = self._fits[-1]
             learner = copy.deepcopy(last)
