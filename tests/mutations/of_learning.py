@@ -187,6 +187,16 @@ STATISTICS = (
         "an alternative may be larger than its estimate",
     ),
     Mutation(
+        "learning/learners/rigid/planning/telling_pose.py",
+        "proposed = proposed[nearest[0] < nearest[1]]",
+        "pass",
+        (
+            "tests/learning/learners/rigid/planning/test_telling_pose.py"
+            "::test_what_was_refused_is_not_asked_for_again",
+        ),
+        "a torque that an arm did not hold is not commanded again",
+    ),
+    Mutation(
         "learning/relations/examined_fit.py",
         "if len(lack.alternatives) < KINDS and not _explained(fit, torques):",
         "if False:",
