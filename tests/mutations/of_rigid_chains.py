@@ -145,14 +145,14 @@ MUTATIONS = (
     ),
     Mutation(
         "learning/relations/identification/chain_identification.py",
-        "if found.beside.said:",
+        "if beside.said:",
         "if False:",
         ("tests/learning/relations/identification/test_chain_identification.py",),
         "a constant that passes for noise makes relations false",
     ),
     Mutation(
         "learning/relations/identification/chain_identification.py",
-        "if not found.beside.complete and",
+        "if not beside.complete and",
         "if False and",
         (
             "tests/learning/relations/identification/test_chain_identification.py"
