@@ -81,26 +81,54 @@ def identify_by_chain(
     '1 more poses: 3 different ones were given, 4 are needed'
     """
     configurations, torques = static_samples(q, tau)
-    n = configurations.shape[1]
-    if not torques.any():
-        return nothing_learned(n, "samples with a torque", METHOD)
-    _, configurations, torques = by_pose(configurations, torques)
-    given, needed = _different_torques(torques), fewest_poses(n, parents)
+    learner = chain_of_samples(configurations, torques, noise=noise, parents=parents)
+    if isinstance(learner, str):
+        return nothing_learned(configurations.shape[1], learner, METHOD)
+    return relations_of_chain(learner)
+
+
+def chain_of_samples(
+    q: Array,
+    tau: Array,
+    *,
+    noise: MeasurementNoise | None = None,
+    parents: Sequence[int] | None = None,
+    unknown_offsets: bool = False,
+) -> RigidChain | str:
+    """Fit a chain to the poses of samples, if these are of torques enough.
+
+    Parameters
+    ----------
+    q, tau : (N, n) arrays
+        Rows [rad], [N m].
+    noise, parents
+        As of `identify_by_chain`.
+    unknown_offsets
+        Whether every joint may have a constant torque.
+
+    Returns
+    -------
+    RigidChain or str
+        Fitted, accepted or not; or what is missing.
+    """
+    if not tau.any():
+        return "samples with a torque"
+    _, configurations, torques = by_pose(q, tau)
+    given, needed = _different_torques(torques), fewest_poses(q.shape[1], parents)
     if given < min(needed, len(torques)):
-        missing = (
+        return (
             f"{needed - given} more torques: {given} different |torque| given, {needed} are needed "
             "(poses that symmetries relate say the same)"
         )
-        return nothing_learned(n, missing, METHOD)
     last = len(configurations) - 1
     taken = np.unique(np.linspace(0, last, MOST_POSES).round().astype(int))
-    learner = RigidChain(
+    return RigidChain(
         parents,
         torque_noise=None if noise is None else noise.torque,
         angle_noise=0.0 if noise is None else noise.angle,
+        unknown_offsets=unknown_offsets,
         max_starts=STARTS,
     ).fit(configurations[taken], torques[taken])
-    return relations_of_chain(learner)
 
 
 def _different_torques(torques: Array) -> int:
@@ -132,27 +160,9 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
         As of `identify_by_chain`.
     """
     samples = learner.fit_.samples
-    if not learner.verdict_.accepted:
-        return nothing_learned(samples.n, learner.remark_, METHOD)
-    joint = unfelt_lever(learner.fit_)
-    if joint is not None:
-        missing = (
-            f"torque on joint {joint + 1}: it held none in all samples, and what it carries may "
-            "have been balanced there alone"
-        )
-        return nothing_learned(samples.n, missing, METHOD)
-    beside = learner.beside()
-    if beside.said:
-        lack = _lack_of_fit(beside)
-        missing = f"an arm whose torque is rigid gravity: there is {lack.said}"
+    missing, lack = obstacle(learner)
+    if missing:
         return nothing_learned(samples.n, missing, METHOD, lack=lack)
-    if not beside.complete and learner.verdict_ is not FitStatus.ROUNDING:
-        given, needed = len(samples.q), beside.samples_needed
-        missing = (
-            f"{needed - given} more samples: {given} different ones were given, which a chain does "
-            f"not explain exactly; {needed} show whether noise does, or a spring or a cable"
-        )
-        return nothing_learned(samples.n, missing, METHOD)
     found = learner.symmetries()
     excess = float(found.gravity_bounds.max()) / (LARGEST_ERROR * samples.largest_torque)
     if excess > 1.0:
@@ -170,6 +180,40 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
         for relation in found.group
     )
     return LearnedSymmetries(found.group, relations, None, METHOD, chain=learner)
+
+
+def obstacle(learner: RigidChain) -> tuple[str, LackOfFit | None]:
+    """What stands in the way of claims from a chain that was fitted to samples.
+
+    Returns
+    -------
+    missing : str
+        Empty where nothing does.
+    lack : LackOfFit or None
+        What the samples show beside the chain, where that is the reason.
+    """
+    samples = learner.fit_.samples
+    if not learner.verdict_.accepted:
+        return learner.remark_, None
+    joint = unfelt_lever(learner.fit_)
+    if joint is not None:
+        missing = (
+            f"torque on joint {joint + 1}: it held none in all samples, and what it carries may "
+            "have been balanced there alone"
+        )
+        return missing, None
+    beside = learner.beside()
+    if beside.said:
+        lack = _lack_of_fit(beside)
+        return f"an arm whose torque is rigid gravity: there is {lack.said}", lack
+    if not beside.complete and learner.verdict_ is not FitStatus.ROUNDING:
+        given, needed = len(samples.q), beside.samples_needed
+        missing = (
+            f"{needed - given} more samples: {given} different ones were given, which a chain does "
+            f"not explain exactly; {needed} show whether noise does, or a spring or a cable"
+        )
+        return missing, None
+    return "", None
 
 
 def _lack_of_fit(beside: BesideChain) -> LackOfFit:

@@ -139,7 +139,7 @@ def chain_symmetries(
         groups = maximal_groups(potential, tolerance)
     else:
         groups = [exact_symmetries(potential)]
-    bounds = _Bounds(fit, errors, snapped, potential, beside)
+    bounds = RelationBounds(fit, errors, snapped, potential, beside)
     bounded, gravity = [], []
     for group in groups:
         both = [bounds.of(relation) for relation in group]
@@ -157,8 +157,16 @@ def chain_symmetries(
     return ChainSymmetries(bounded[0], gravity[0], beside, corrections, snapped, tuple(bounded[1:]))
 
 
-class _Bounds:
-    """Bounds of relations of one chain, at the same configurations each."""
+class RelationBounds:
+    """Bounds of relations of one chain, at the same configurations each.
+
+    Parameters
+    ----------
+    fit, errors, snapped, beside
+        As of `chain_symmetries`.
+    potential : TrigonometricPolynomial
+        Of the snapped chain.
+    """
 
     def __init__(
         self,
@@ -178,6 +186,50 @@ class _Bounds:
         largest = float(np.abs(self._here.torque).max())
         self._floor = FLOOR * max(largest, fit.samples.largest_torque)
 
+    def violation(
+        self, relation: SymmetryRelation, correction: Array, deviations: float
+    ) -> tuple[Array, Array, Array, Array]:
+        """How far the measured torque misses ``tau' = Y tau + correction``, any relation.
+
+        Parameters
+        ----------
+        relation
+            Need be none of the chain's.
+        correction : (n,) array
+            [N m].
+        deviations
+            Standard errors that are taken off.
+
+        Returns
+        -------
+        estimate, seen, least : (n,) arrays
+            Largest error of each joint at the configurations looked at [N m]: as fitted, so many
+            standard errors less, and what else the samples leave room for less.
+        where : (n, n) array
+            Configuration of the latter, one row per joint [rad].
+        """
+        fit, here, Y = self._fit, self._here, relation.Y
+        there = _Evaluated(fit, self._errors.replicas, relation.configuration(self._q))
+        missed = there.torque - Y * here.torque - correction
+        slopes = there.slopes - Y[:, None] * here.slopes
+        error = deviations / DEVIATIONS * self._error(there, slopes, Y)
+        seen = least = np.abs(missed) - error - self._floor
+        for term in self._beside.terms:
+            more = np.linalg.norm(slopes @ term.root, axis=2)
+            size = np.abs(missed + slopes @ term.change) - np.hypot(error, more)
+            least = np.minimum(least, size - term.missed(relation))
+        at = least.argmax(axis=0)
+        return np.abs(missed).max(axis=0), seen.max(axis=0), least.max(axis=0), self._q[at]
+
+    def _error(self, there: _Evaluated, slopes: Array, Y: Array) -> Array:
+        """Standard errors of what relations miss, times `DEVIATIONS`."""
+        fit, here = self._fit, self._here
+        error = np.linalg.norm(slopes, axis=2) * fit.spread
+        if len(here.replicas):
+            changed = there.replicas - there.torque - Y * (here.replicas - here.torque)
+            error = np.maximum(error, fit.spread * np.sqrt(np.mean(changed**2, axis=0)))
+        return np.asarray(DEVIATIONS * error)
+
     def of(self, relation: SymmetryRelation) -> tuple[Array, Array]:
         """Of gravity alone, and of the measured torque, (n,) [N m] each."""
         fit, here, Y = self._fit, self._here, relation.Y
@@ -189,11 +241,7 @@ class _Bounds:
         fitted = moved - Y * (here.torque - self._torque)
         fitted = fitted - (self._offsets - Y * self._offsets)
         slopes = there.slopes - Y[:, None] * here.slopes
-        error = np.linalg.norm(slopes, axis=2) * fit.spread
-        if len(here.replicas):
-            changed = there.replicas - there.torque - Y * (here.replicas - here.torque)
-            error = np.maximum(error, fit.spread * np.sqrt(np.mean(changed**2, axis=0)))
-        error = DEVIATIONS * error
+        error = self._error(there, slopes, Y)
         least = np.abs(self._special.gains) * proved
         gravity = np.maximum(least + (np.abs(fitted) + error).max(axis=0), self._floor)
         bound = gravity
