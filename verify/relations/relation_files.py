@@ -45,6 +45,8 @@ class RelationsFile:
         Whether the file claims that no exact relation is missing.
     generate : bool
         Whether the relations are generators, not all members.
+    corrections : (G, n) array or None
+        Constants c of ``tau' = Y tau + c``, where relations of the measured torque have them [N m].
     """
 
     source: str
@@ -53,6 +55,7 @@ class RelationsFile:
     order: int | None = None
     complete: bool = False
     generate: bool = False
+    corrections: Array | None = None
 
     def __iter__(self) -> Iterator[SymmetryRelation]:
         return iter(self.relations)
@@ -87,9 +90,9 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     InputError
         For a file that cannot be read or is not JSON, for wrong types, lengths, signs, numbers
         that are not finite, and for optional entries (``joints``, ``order``, ``complete``,
-        ``rank``, ``basis``, ``free_directions``; ``M``, ``N``, ``rhs``, ``exact``, ``bound``) that
-        are malformed or contradict ``A`` and ``d``. The message names the file, the field and the
-        value.
+        ``rank``, ``basis``, ``free_directions``, ``corrections``; ``M``, ``N``, ``rhs``,
+        ``exact``, ``bound``) that are malformed or contradict ``A`` and ``d``. The message names
+        the file, the field and the value.
 
     Notes
     -----
@@ -119,6 +122,8 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     relations = tuple(_relation(entry, n, B) for entry in entries)
     _check_group_entries(root, relations, B, n, generate)
     order, complete = root.optional("order"), root.optional("complete")
+    shifts = root.optional("corrections")
+    shifts = None if shifts is None or shifts.value is None else shifts
     return RelationsFile(
         source=document.where,
         relations=relations,
@@ -126,6 +131,7 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
         order=None if order is None else order.integer(),
         complete=complete is not None and complete.boolean(),
         generate=generate,
+        corrections=None if shifts is None else shifts.matrix(rows=len(relations), columns=n),
     )
 
 

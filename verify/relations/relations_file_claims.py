@@ -86,14 +86,14 @@ def verify_relations_file(
         if file.complete or (file.order is not None and exact):
             verdicts.append(_generation(file, gravity))
         elif file.order is not None:
-            verdicts.append(_closure(file))
+            verdicts.append(judge_closure(file))
     elif file.complete:
         verdicts.append(_completeness(file, gravity))
     elif file.order is not None and exact:
         whole = _completeness(file, gravity)
-        verdicts.append(whole if whole.passed else _closure(file, _there_are(gravity)))
+        verdicts.append(whole if whole.passed else judge_closure(file, _there_are(gravity)))
     elif file.order is not None:
-        verdicts.append(_closure(file))
+        verdicts.append(judge_closure(file))
     return tuple(verdicts)
 
 
@@ -215,7 +215,16 @@ def _generated(group: SymmetryGroup, numbers: set[int]) -> int:
     return len(reached)
 
 
-def _closure(file: RelationsFile, there_are: int | None = None) -> Verdict:
+def judge_closure(file: RelationsFile, there_are: int | None = None) -> Verdict:
+    """Judge whether the relations form, or generate, a group: no robot is needed for that.
+
+    Parameters
+    ----------
+    file
+        With an ``order``.
+    there_are
+        How many exact relations there are, where that is known.
+    """
     known = "" if there_are is None else f" (of the {there_are} that there are)"
     claim = f"the {len(file)} relations listed{known} form a group"
     try:

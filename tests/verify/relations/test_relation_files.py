@@ -48,6 +48,16 @@ def test_what_is_written_is_read_back(tmp_path_factory, arm):
         assert read.exact == written.exact
 
 
+def test_corrections_are_one_constant_per_joint_and_relation(tmp_path):
+    entry = {"A": [[-1, 0], [2, 1]], "d": [0, 0], "Y": [1, 1]}
+    for stated in (None, [[0, 0.5]]):
+        found = load(tmp_path, {"relations": [entry], "corrections": stated}).corrections
+        assert found is None if stated is None else np.array_equal(found, stated)
+    for stated in ([[0.5]], [[0, 0], [0, 0]], [["a", 0]], 1):
+        with pytest.raises(InputError, match="corrections"):
+            load(tmp_path, {"relations": [entry], "corrections": stated})
+
+
 def test_A_d_and_Y_suffice(tmp_path):
     entry = {"A": [[-1, 0], [2, 1]], "d": [0, 0], "Y": [1, 1]}
     for document in ({"relations": [entry]}, [entry]):
