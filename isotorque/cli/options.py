@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 
 Json = Annotated[
     bool, typer.Option("--json", help="Print one JSON document and nothing else on stdout.")
@@ -68,6 +71,28 @@ def numbers(text: str, option: str, count: int) -> list[float]:
             f"{count} finite numbers, each at most {LARGEST:g}, with commas",
         )
     return values
+
+
+def measurement_noise(angle: float | None, torque: float | None) -> MeasurementNoise | None:
+    """Noise of measurements from ``--angle-noise`` and ``--torque-noise``; None without either.
+
+    Raises
+    ------
+    InputError
+        For a level that is no finite number >= 0, and where both are 0.
+    """
+    from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+    from isotorque.symbolic.common.errors import InputError
+
+    if angle is None and torque is None:
+        return None
+    for option, value in (("--angle-noise", angle), ("--torque-noise", torque)):
+        if value is not None and not 0.0 <= value <= LARGEST:
+            raise InputError("command line", option, value, f"0 to {LARGEST:g}")
+    if not (angle or torque):
+        found = "0 everywhere"
+        raise InputError("command line", "noise", found, "one level > 0, or neither option")
+    return MeasurementNoise(angle or 0.0, torque or 0.0)
 
 
 Samples = Annotated[

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from isotorque.cli.options import Json, Quiet
+from isotorque.cli.options import Json, Quiet, measurement_noise
 from isotorque.cli.output import emit_json, row, say
 from isotorque.cli.robot_options import named, takes_robot
 from isotorque.plain import plain
@@ -16,7 +16,6 @@ from isotorque.symbolic.common.robot_options import RobotOptions
 
 if TYPE_CHECKING:
     from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
-    from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
     from isotorque.learning.relations.testing.judge_candidates import JudgedCandidate
 
 PHASE = "discovery"
@@ -80,7 +79,7 @@ def relations(
     )
     from isotorque.symbolic.common.files import write_whole
 
-    noise = _noise(angle_noise, torque_noise)
+    noise = measurement_noise(angle_noise, torque_noise)
     if candidates is None and noise is None and _of_a_chain(run, json=json, quiet=quiet):
         return 0
     with RecordingReader(run / DATABASE) as reader:
@@ -132,22 +131,6 @@ def _of_a_chain(run: Path, *, json: bool, quiet: bool) -> bool:
         print(f"set: {hypothesis}")
     say(f"written: {run / 'relations.json'}", quiet)
     return True
-
-
-def _noise(angle: float | None, torque: float | None) -> MeasurementNoise | None:
-    from isotorque.cli.options import LARGEST
-    from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
-    from isotorque.symbolic.common.errors import InputError
-
-    if angle is None and torque is None:
-        return None
-    for option, value in (("--angle-noise", angle), ("--torque-noise", torque)):
-        if value is not None and not 0.0 <= value <= LARGEST:
-            raise InputError("command line", option, value, f"0 to {LARGEST:g}")
-    if not (angle or torque):
-        found = "0 everywhere"
-        raise InputError("command line", "noise", found, "one level > 0, or neither option")
-    return MeasurementNoise(angle or 0.0, torque or 0.0)
 
 
 def _print_learned(learned: LearnedSymmetries, document: dict[str, Any]) -> None:

@@ -2,25 +2,91 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
+from isotorque.learning.files.csv_samples import joint_names_of, read_csv
 from isotorque.learning.files.saved_models import load_model
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.runs.from_data.data_remarks import analytic_remarks
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.strict_json import read_json
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import Robot
+from isotorque.verify.models.fresh_measurements import (
+    FreshMeasurements,
+    MeasuredJudgement,
+    verify_on_measurements,
+)
 from isotorque.verify.models.largest_errors import default_tolerance, require_gravity
+from isotorque.verify.models.measured_torques import disagreement
 from isotorque.verify.models.verify_model import verify_model
+from isotorque.verify.relations.measured_relations import verify_relations_on_measurements
 from isotorque.verify.relations.relation_files import load_relations
 from isotorque.verify.relations.relations_file_claims import verify_relations_file
-from isotorque.verify.verdict import Verdict
+from isotorque.verify.verdict import Status, Verdict, all_passed
 
 RELATION_TOLERANCE = 1e-9
 
 
+@dataclass(frozen=True, eq=False)
+class FreshData:
+    """Measurements to judge by.
+
+    Attributes
+    ----------
+    file : Path
+        A CSV file, see ``read_csv``.
+    noise : MeasurementNoise or None
+        Of the measurements, where it is known.
+    """
+
+    file: Path
+    noise: MeasurementNoise | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Verification:
+    """What was judged.
+
+    Attributes
+    ----------
+    verdicts : tuple of Verdict
+        At least one.
+    remarks : tuple of str
+        What else measurements show.
+    measured : dict
+        Their figures, by the name of what was judged.
+    """
+
+    verdicts: tuple[Verdict, ...]
+    remarks: tuple[str, ...] = ()
+    measured: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def passed(self) -> bool:
+        """Whether every claim stands; what was not tested does not."""
+        return all_passed(self.verdicts)
+
+    @property
+    def outcome(self) -> str:
+        """In one line."""
+        untested = sum(verdict.status is Status.UNTESTED for verdict in self.verdicts)
+        if not untested:
+            return "passed" if self.passed else "failed"
+        return f"failed: {untested} of {len(self.verdicts)} claims were not tested"
+
+
 def verify_path(
-    path: Path, robot: Robot, gravity: GravityModel, tolerance: float | None
-) -> tuple[Verdict, ...]:
+    path: Path,
+    robot: Robot | None = None,
+    gravity: GravityModel | None = None,
+    tolerance: float | None = None,
+    *,
+    data: FreshData | None = None,
+) -> Verification:
     """Judge whatever a path holds.
 
     Parameters
@@ -28,31 +94,83 @@ def verify_path(
     path
         A relations file, a ``model.json``, or a directory with either.
     robot, gravity
-        The truth.
+        The truth, if a robot file is to judge.
     tolerance
-        Torque error allowed [N m]; None: 1e-9 for relations, for models 1 % of each joint's
-        largest torque, at least 1e-3 of the arm's.
+        Torque error allowed [N m]. None: beside a robot 1e-9 for relations; for models, and beside
+        measurements, 1 % of each joint's largest torque, at least 1e-3 of the arm's.
+    data
+        Measurements, if they are to judge; with a robot as well, each claim says what it is about.
 
     Raises
     ------
     InputError
-        If there is nothing to judge, a model of another robot, or a robot that gravity does not
-        load, beside which everything would pass.
+        If there is nothing to judge or nothing to judge by, a model of another robot, a robot that
+        gravity does not load, beside which everything would pass, or measurements that say
+        nothing.
     """
-    if not path.is_dir():
-        return _one(path, robot, gravity, tolerance)
-    found = [path / name for name in ("relations.json", "model.json") if (path / name).is_file()]
-    if not found:
+    if gravity is None and data is None:
+        accepted = "--robot ROBOT, --data FRESH.csv or both"
+        raise InputError("command line", "what to judge by", "missing", accepted)
+    files = [path]
+    if path.is_dir():
+        names = ("relations.json", "model.json")
+        files = [path / name for name in names if (path / name).is_file()]
+    if not files:
         raise InputError(path, "directory", "without results", "relations.json or model.json in it")
-    return tuple(verdict for file in found for verdict in _one(file, robot, gravity, tolerance))
+    verdicts: list[Verdict] = []
+    remarks: list[str] = []
+    measured = {}
+    for file in files:
+        if data is not None:
+            found = _by_measurements(file, data, tolerance)
+            verdicts += found.verdicts
+            about = f"{file.name}: " if len(files) > 1 else ""
+            remarks += [f"{about}{remark}" for remark in found.remarks]
+            measured[file.name] = found.document
+        if gravity is not None and robot is not None:
+            of_robot = _by_robot(file, robot, gravity, tolerance)
+            verdicts += of_robot if data is None else _named(of_robot, gravity)
+    if data is not None and gravity is not None and robot is not None:
+        remarks += _beside_robot(data, robot, gravity)
+    return Verification(tuple(verdicts), tuple(remarks), measured)
 
 
-def _one(
+def _named(verdicts: tuple[Verdict, ...], gravity: GravityModel) -> Iterator[Verdict]:
+    """Say that verdicts are about a robot file, where measurements judge as well."""
+    for verdict in verdicts:
+        yield replace(verdict, claim=f"the file's robot ({gravity.name}): {verdict.claim}")
+
+
+def _is_model(path: Path) -> bool:
+    document = read_json(path)
+    return document.is_object and document.optional("kind") is not None
+
+
+def _by_measurements(path: Path, data: FreshData, tolerance: float | None) -> MeasuredJudgement:
+    if _is_model(path):
+        saved = load_model(path)
+        fresh = _fresh(data, saved.joint_names)
+        return verify_on_measurements(saved, fresh, tolerance=tolerance, noise=data.noise)
+    relations = load_relations(path)
+    fresh = _fresh(data, relations.joint_names or joint_names_of(data.file))
+    return verify_relations_on_measurements(relations, fresh, tolerance=tolerance, noise=data.noise)
+
+
+def _fresh(data: FreshData, joint_names: tuple[str, ...]) -> FreshMeasurements:
+    return FreshMeasurements.of(data.file, read_csv(data.file, joint_names), joint_names)
+
+
+def _beside_robot(data: FreshData, robot: Robot, gravity: GravityModel) -> tuple[str, ...]:
+    """How the measurements disagree with the robot file."""
+    samples = read_csv(data.file, robot.joint_names)
+    return analytic_remarks(disagreement(samples.q, samples.tau, gravity), None, samples, robot)
+
+
+def _by_robot(
     path: Path, robot: Robot, gravity: GravityModel, tolerance: float | None
 ) -> tuple[Verdict, ...]:
     require_gravity(gravity)
-    document = read_json(path)
-    if document.is_object and document.optional("kind") is not None:
+    if _is_model(path):
         return _model(path, robot, gravity, tolerance)
     allowed = RELATION_TOLERANCE if tolerance is None else tolerance
     return verify_relations_file(load_relations(path), gravity, allowed)

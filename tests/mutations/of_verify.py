@@ -173,4 +173,128 @@ REPORTS = (
     ),
 )
 
-MUTATIONS = (*RELATIONS, *MODELS, *REPORTS)
+FRESH = "learning/statistics/fresh_errors.py"
+MEASURED = "verify/models/fresh_measurements.py"
+MEASURED_RELATIONS = "verify/relations/measured_relations.py"
+RELATION_ERRORS = "learning/relations/testing/relation_errors.py"
+OF_FRESH = ("tests/learning/statistics/test_fresh_errors.py",)
+OF_MEASURED = ("tests/verify/models/test_fresh_measurements.py",)
+OF_MEASURED_RELATIONS = ("tests/verify/relations/test_measured_relations.py",)
+OF_RELATION_ERRORS = ("tests/learning/relations/testing/test_relation_errors.py",)
+
+BY_MEASUREMENTS = (
+    Mutation(
+        "verify/verdict.py",
+        "not in (Status.REFUTED, Status.UNTESTED)",
+        "is not Status.REFUTED",
+        ("tests/verify/test_verdict.py",),
+        "what was not tested passes",
+    ),
+    Mutation(
+        FRESH,
+        "return float(degrees * ratio)",
+        "return 1.0",
+        OF_FRESH,
+        "noise that was estimated is taken for known: right models are refuted too often",
+    ),
+    Mutation(
+        FRESH,
+        "return float(freedom / special.chdtri(freedom, MISSED / 2.0))",
+        "return 1.0",
+        OF_FRESH,
+        "noise that was estimated too large hides errors of three times the tolerance",
+    ),
+    Mutation(
+        FRESH,
+        "return square / total, total**2 / square",
+        "return total / len(variance), float(len(variance))",
+        OF_FRESH,
+        "poses of few rows are as sure as the others",
+    ),
+    Mutation(
+        MEASURED,
+        "elif hidden.any():",
+        "elif False:",
+        OF_MEASURED,
+        "noise that hides errors passes",
+    ),
+    Mutation(
+        MEASURED,
+        "elif (fresh.span < ALIKE).all():",
+        "elif False:",
+        OF_MEASURED,
+        "poses all alike pass",
+    ),
+    Mutation(
+        MEASURED,
+        "if self.poses.count < LEAST_POSES:",
+        "if False:",
+        OF_MEASURED,
+        "one pose judges a model",
+    ),
+    Mutation(
+        MEASURED,
+        "found.freedom >= FEW_REPEATS",
+        "found.freedom < 0",
+        OF_MEASURED,
+        "what a model states goes before what the measurements show",
+    ),
+    Mutation(
+        MEASURED_RELATIONS,
+        "found.poses >= LEAST_POSES and found.resolved.all()",
+        "found.poses and found.resolved.all()",
+        OF_MEASURED_RELATIONS,
+        "a pair of poses lets a relation pass",
+    ),
+    Mutation(
+        MEASURED_RELATIONS,
+        "and found.resolved.all()",
+        "and True",
+        OF_MEASURED_RELATIONS,
+        "pairs in much noise let a relation pass",
+    ),
+    Mutation(
+        MEASURED_RELATIONS,
+        "(best.most <= RESOLVED * self.allowed).all()",
+        "True",
+        OF_MEASURED_RELATIONS,
+        "a fit that tells nothing lets a relation pass",
+    ),
+    Mutation(
+        MEASURED_RELATIONS,
+        "if (errors.seen > self.allowed).any():",
+        "if False:",
+        OF_MEASURED_RELATIONS,
+        "a relation that the fit misses passes, because a spring might be there",
+    ),
+    Mutation(
+        RELATION_ERRORS,
+        "np.abs(miss) - deviations * more - 2.0 * other.size",
+        "np.abs(missed) - deviations * error",
+        OF_MEASURED_RELATIONS,
+        "relations are refuted though a cable might be what is seen",
+    ),
+    Mutation(
+        RELATION_ERRORS,
+        "if carried.any():",
+        "if False:",
+        OF_RELATION_ERRORS,
+        "joints that never moved are carried to where nothing was measured",
+    ),
+    Mutation(
+        RELATION_ERRORS,
+        "        if advice:\n",
+        "        if False:\n",
+        OF_RELATION_ERRORS,
+        "samples in degrees are taken for noisy ones",
+    ),
+    Mutation(
+        "isotorque/runs/verification.py",
+        "verdicts += of_robot if data is None else _named(of_robot, gravity)",
+        "verdicts += of_robot",
+        ("tests/isotorque/runs/test_verification.py",),
+        "nobody knows which claims are about the arm and which about its drawing",
+    ),
+)
+
+MUTATIONS = (*RELATIONS, *MODELS, *REPORTS, *BY_MEASUREMENTS)

@@ -112,9 +112,17 @@ class FreshMeasurements:
         return np.maximum(SHARE * largest, LEAST_SHARE * largest.max())
 
     def tolerances(self, tolerance: float | None) -> Array:
-        """What is asked for, (n,) [N m]; the default where it is None."""
+        """What is asked for, (n,) [N m]; the default where it is None.
+
+        Raises
+        ------
+        InputError
+            If it is negative or no finite number.
+        """
         if tolerance is None:
             return self.default_tolerance()
+        if not 0.0 <= tolerance < np.inf:
+            raise InputError("measurements", "tolerance", tolerance, "a finite number >= 0 [N m]")
         return np.full(len(self.joint_names), tolerance)
 
     def row(self, pose: int) -> int:
@@ -362,11 +370,11 @@ def _range_in_words(outside: NDArray[np.bool_], found: FreshErrors) -> str:
     if not count:
         return f"all {total} poses lie within the range of the model's own data"
     there = float(np.sqrt(np.mean(found.errors[outside] ** 2)))
-    said = f"{count} of {total} poses lie outside the range of the model's own data"
+    said = f"poses outside the range of the model's own data: {count} of {total}"
     if count == total:
         return said
     here = float(np.sqrt(np.mean(found.errors[~outside] ** 2)))
-    return f"{said}: RMSE {there:.3g} N m there, {here:.3g} N m at the others"
+    return f"{said}; RMSE {there:.3g} N m there, {here:.3g} N m at the others"
 
 
 def _unmoved(fresh: FreshMeasurements) -> list[str]:

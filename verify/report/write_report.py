@@ -74,7 +74,9 @@ def render_report(report: RunReport) -> str:
     )
 
 
-def verdicts_page(title: str, verdicts: Sequence[Verdict], subtitle: str = "") -> str:
+def verdicts_page(
+    title: str, verdicts: Sequence[Verdict], subtitle: str = "", remarks: Sequence[str] = ()
+) -> str:
     """Return a page with verdicts alone, for ``verify --report``.
 
     Parameters
@@ -83,9 +85,15 @@ def verdicts_page(title: str, verdicts: Sequence[Verdict], subtitle: str = "") -
         What was judged; what it was judged against.
     verdicts
         The judgement.
+    remarks
+        What else is to be said.
     """
     return _template("verdicts.html.j2").render(
-        title=title, subtitle=subtitle, verdicts=verdicts, passed=all_passed(verdicts)
+        title=title,
+        subtitle=subtitle,
+        verdicts=verdicts,
+        remarks=remarks,
+        passed=all_passed(verdicts),
     )
 
 
