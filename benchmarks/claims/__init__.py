@@ -1,0 +1,1 @@
+"""Claims about measured torques, and causes named, held against contaminated arms."""
