@@ -16,8 +16,8 @@ def report(outcomes: Sequence[Outcome], command: str) -> str:
     held = demands(outcomes)
     open_ones = [demand for demand in held if not demand.holds]
     parts = [
-        f"`{command}`: {len(outcomes)} data sets; {len(held) - len(open_ones)} of {len(held)} demands hold."
-        + (" These do not:" if open_ones else "")
+        f"`{command}`: {len(outcomes)} data sets; {len(held) - len(open_ones)} of {len(held)} "
+        "demands hold." + (" These do not:" if open_ones else "")
     ]
     if open_ones:
         parts.append(_of_demands(open_ones))
@@ -50,8 +50,9 @@ def _by_robot(
     for pool in pools:
         whole = part(outcomes, None, pool)
         if whole:
-            by_robot = [entry(part(outcomes, robot, pool)) for robot in ROBOTS]
-            rows.append([pool, *by_robot, *(of_all(whole) for _, of_all in more)])
+            by_robot = [part(outcomes, robot, pool) for robot in ROBOTS]
+            cells = [entry(some) if some else "" for some in by_robot]
+            rows.append([pool, *cells, *(of_all(whole) for _, of_all in more)])
     return _table(rows)
 
 

@@ -5,6 +5,7 @@ import sys
 import pytest
 
 from benchmarks.claims import __main__ as claims
+from benchmarks.claims.demands import demands
 from tests.benchmarks.claims.test_demands import GOOD
 from tests.benchmarks.claims.test_demands import claims as with_claims
 
@@ -32,7 +33,7 @@ def test_the_command_measures_prints_and_writes(tmp_path, monkeypatch, capsys):
     printed = capsys.readouterr().out
     assert status in (0, 1)
     assert printed.strip() in page.read_text()
-    assert "| clean | 0 / 3 / 3 |" in printed
+    assert "| clean | 0 / 4 / 4 |" in printed
     assert (
         "`python -m benchmarks.claims --robots 2r --kinds clean offset --share 0.01 --seed 0`"
         in (printed)
@@ -69,3 +70,15 @@ def test_bad_input_is_refused_in_one_line(options, said, monkeypatch, capsys):
     assert error.startswith("error: ")
     assert error.count("\n") == 1
     assert said in error
+
+
+OPEN = ("compliance: data sets with a wrong claim", "scale: data sets with a wrong claim")
+"""What does not hold: errors of angles are in no bound of a relation yet."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("robot", ["2r", "3r"])
+def test_a_twentieth_holds_what_is_demanded(robot):
+    found = claims.measured([robot], share=0.05, seed=1, jobs=1)
+    failed = [demand for demand in demands(found) if not demand.holds]
+    assert [demand for demand in failed if not demand.what.endswith(OPEN)] == []

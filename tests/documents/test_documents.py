@@ -198,6 +198,7 @@ def test_pairs_show_as_many_relations_as_the_pages_say(robot, observed, order, p
 
 WITHOUT = {
     # what the numbers of a section are, where they are no measurements
+    ("claims.md", "What is demanded"): "settings",
     ("export.md", "Arrays"): "the version of a format",
     ("export.md", "What becomes of a learner"): "formulas; the tests are named under CasADi",
     ("paper.md", "How to read it"): "the paper's targets; settings",
