@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 
 from isotorque.learning.statistics.fresh_errors import (
     LEAST_POSES,
@@ -139,3 +140,14 @@ def test_poses_of_fewer_rows_count_as_noisier():
         found = errors_by_pose(errors, poses, known, np.full(1, 1e-6), chance=0.1)
         refuted += bool(found.refuted[0])
     assert refuted <= TRIALS * 0.05 + 4.0 * np.sqrt(TRIALS * 0.05)
+
+
+@pytest.mark.parametrize("freedom", [3.0, 10.0, 60.0])
+def test_what_counts_as_noticeable_is_so_though_noise_was_estimated_too_large(freedom):
+    poses = 10
+    found = fresh_errors(np.zeros((poses, 1)), np.full((poses, 1), 0.5), freedom, np.ones(1))
+    least = 0.25 * freedom / stats.chi2.isf(0.005, freedom)  # variance, but once in 200
+    missed = stats.ncx2.cdf(
+        poses * found.allowed[0] ** 2 / least, poses, poses * found.noticeable[0] ** 2 / least
+    )
+    assert missed == pytest.approx(0.005, rel=1e-3)
