@@ -21,6 +21,7 @@ from isotorque.learning.learners.rigid.misread_samples import other_reading
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import ChainSymmetries
+from isotorque.learning.statistics.causes.diagnose import Cause
 from isotorque.learning.statistics.poses import group_poses
 from isotorque.runs.from_data.poses_to_take import poses_to_take
 from isotorque.runs.stages import DATABASE
@@ -186,6 +187,7 @@ class ChainFromData:
                 "torque_noise": learner.fit_.samples.torque_noise.tolist(),
                 "relations": self.symmetries.group.order,
                 "statement": self.symmetries.statement,
+                "causes": [self._cause(cause) for cause in learner.causes_],
             }
             if learner.gain_groups_:
                 gains = learner.chain_.gains
@@ -199,6 +201,16 @@ class ChainFromData:
             return []
         still = np.ptp(self.samples.tau, axis=0) == 0.0
         return [(j, name) for j, name in enumerate(self.joint_names) if still[j]]
+
+    def _cause(self, cause: Cause) -> dict[str, Any]:
+        """What is known of a cause beside gravity, joints by name."""
+        found = cause.as_json()
+
+        def name(joint: int | None) -> str | None:
+            return None if joint is None else self.joint_names[joint]
+
+        rivals = [[kind, name(joint)] for kind, joint in found["rivals"]]
+        return found | {"joint": name(cause.joint), "rivals": rivals}
 
     def _gains(self, group: GainGroup, gains: Array) -> dict[str, Any]:
         """Return gains that are known relative to each other."""
@@ -305,9 +317,9 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
 
     Notes
     -----
-    Joints are in series in the order of their columns. Rows of one pose count as one sample. Where
-    the samples are explained neither exactly nor within stated noise, a constant torque per joint
-    is fitted too: left out, it would be taken for noise.
+    Joints are in series in the order of their columns. Rows of one pose count as one sample.
+    Constants and gains that the samples show beside gravity are fitted with the chain: left out,
+    they would be taken for noise.
     """
     names = joint_names_of(options.file)
     samples = read_csv(options.file, names)
@@ -327,19 +339,17 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
     known = gains_by_joint(options.known_gains, names) if options.unknown_gains else None
     load = _known_load(options, names)
 
-    def fitted(offsets: bool) -> RigidChain:
-        return RigidChain(
+    def fitted() -> RigidChain:
+        alone = RigidChain(
             torque_noise=(options.torque_noise or 0.0) if stated else None,
             angle_noise=options.angle_noise or 0.0,
-            unknown_offsets=offsets,
             unknown_gains=options.unknown_gains,
             known_gains=known,
             random_state=options.seed,
         ).fit(q, tau)
+        return alone.with_causes() or alone
 
-    plain = learner = fitted(False)
-    if learner.verdict_ not in (FitStatus.ROUNDING, FitStatus.CHI_SQUARE, FitStatus.TOO_FEW):
-        learner = fitted(True)
+    learner = fitted()
     if learner.verdict_.accepted and load is not None and known is not None:
         joint, moment, loaded = load
         found = gain_from_load(
@@ -352,12 +362,12 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
             learner.errors_.replicas,
         )
         known[joint] = found.gain
-        learner = fitted(bool(learner.unknown_offsets))
+        learner = fitted()
     if learner.verdict_.accepted:
         return ChainFromData(options, names, samples, learner, learner.symmetries())
     reading = None
     if learner.verdict_ is FitStatus.MISFIT:
-        reading = other_reading(plain, q, tau, names)
+        reading = other_reading(learner, q, tau, names)
     return ChainFromData(options, names, samples, learner, None, reading)
 
 

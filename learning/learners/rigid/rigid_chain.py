@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from sklearn.base import clone
 
 from isotorque.learning.learners.base import SavedLearner
 from isotorque.learning.learners.rigid.fitting.acceptance import EXACT, fit_chain
@@ -41,10 +42,17 @@ from isotorque.learning.learners.sample_checks import (
     require_fitted,
 )
 from isotorque.learning.learners.torque_score import TorqueRegressor
+from isotorque.learning.statistics.causes.cause_words import causes_in_words
+from isotorque.learning.statistics.causes.diagnose import Cause, Diagnosis, diagnose
+from isotorque.learning.statistics.causes.extension import Kind, Shape, Term
 from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 
+HELD = {Kind.OFFSET, Kind.GAIN, Kind.SIGN}
+"""Causes that a chain can hold itself."""
+ROOM_FOR = {Kind.SPRING, Kind.CABLE}
+"""Others that bounds of its relations leave room for."""
 ROUNDING_SHARE = 0.1
 """Standard deviation of rounding, as a share of the largest that is called so (`EXACT`), ..."""
 MISFITS = 2.0
@@ -69,8 +77,8 @@ class RigidChain(TorqueRegressor, SavedLearner):
     known_gains : sequence of (float or None) or None
         With unknown gains: those that are known, None for the others. One of them fixes the
         common factor of all joints that are coupled with it.
-    unknown_offsets : bool
-        Whether every torque sensor has an unknown constant error.
+    unknown_offsets : bool or sequence of bool
+        Whether torque sensors have an unknown constant error: all, or one entry per joint.
     max_starts : int
         Random starts of the search at most.
     window : int
@@ -87,6 +95,8 @@ class RigidChain(TorqueRegressor, SavedLearner):
         The chain.
     fit_ : ChainFit
         Everything about the fit.
+    causes_ : tuple of Cause
+        What it holds beside gravity because the samples show it (`with_causes`).
     gain_groups_ : tuple of GainGroup
         Joints whose gains are known relative to each other.
 
@@ -116,6 +126,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
     _errors: TorqueErrors | None
     _snapped: tuple[float, SnappedChain] | None
     _beside: BesideChain | None
+    _diagnosis: Diagnosis | None
     group: None = None  # symmetries follow from the chain; there is nothing to be told
 
     def __init__(
@@ -126,7 +137,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         angle_noise: float | Sequence[float] = 0.0,
         unknown_gains: bool = False,
         known_gains: Sequence[float | None] | None = None,
-        unknown_offsets: bool = False,
+        unknown_offsets: bool | Sequence[bool] = False,
         max_starts: int = 300,
         window: int = 1000,
         random_state: int = 0,
@@ -164,10 +175,18 @@ class RigidChain(TorqueRegressor, SavedLearner):
             If a number is NaN or infinite, a parameter of the learner is unusable, or there is
             not one torque per joint.
         """
+        return self._fit(X, y, sample_weight, None)
+
+    def _fit(self, X: Any, y: Any, sample_weight: Any, near: ChainParameters | None) -> RigidChain:
+        """Fit, from the rotations and gains of another chain first."""
         self._check_parameters()
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
         self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
-        return self._learn(self._samples(q, torque, weights), None)
+        start, model = None, self._model
+        if near is not None:
+            gains = np.where(model.free_gains, near.gains, model.gains)
+            start = replace(model.start(near.rotations), gains=gains)
+        return self._learn(self._samples(q, torque, weights), start)
 
     def partial_fit(self, X: Any, y: Any, sample_weight: Any = None) -> RigidChain:
         """Learn further samples, starting from the chain found before.
@@ -260,10 +279,60 @@ class RigidChain(TorqueRegressor, SavedLearner):
         >>> RigidChain().fit(q, torque).symmetries().group.order
         8
         """
-        return chain_symmetries(self.fit_, self.errors_, self.snapped(), self.beside(), tolerance)
+        said = causes_in_words(self.diagnosis().causes)
+        return chain_symmetries(
+            self.fit_, self.errors_, self.snapped(), self.beside(), said, tolerance
+        )
+
+    def diagnosis(self) -> Diagnosis:
+        """What the samples show beside a chain: causes, named; none where it is exact.
+
+        Raises
+        ------
+        NotAccepted
+            If there are too few samples for one.
+        """
+        require_fitted(self)
+        if self.fit_.verdict is not FitStatus.MISFIT:
+            self._require_accepted()
+        if self._diagnosis is None:
+            self._diagnosis = self._diagnosed()
+        return self._diagnosis
+
+    def with_causes(self) -> RigidChain | None:
+        """The same samples with the constants and gains that they show beside the chain.
+
+        Returns
+        -------
+        RigidChain or None
+            None where nothing is shown, or a cause could be anything but a constant or a gain, or
+            no chain is accepted with them. ``causes_`` of the result are those of this one.
+        """
+        if not (self.verdict_.accepted or self.verdict_ is FitStatus.MISFIT):
+            return None
+        found = self.diagnosis()
+        kinds = {cause.kind for cause in found.causes}
+        rivals = {kind for cause in found.causes for kind, _ in cause.rivals}
+        if not kinds or not kinds <= HELD or not rivals <= HELD | ROOM_FOR:
+            return None
+        if found.selection is None or not (self.verdict_.accepted or found.clear):
+            return None
+        n, samples = self.fit_.model.n, self.fit_.samples
+        joints = {column.joint for column in self._model.columns}
+        joints |= {j for c in found.causes if c.kind is Kind.OFFSET for j in c.joints(n)}
+        again = clone(self).set_params(
+            unknown_offsets=[j in joints for j in range(n)],
+            unknown_gains=self.unknown_gains or bool(kinds & {Kind.GAIN, Kind.SIGN}),
+        )
+        near = found.selection.fit.chain
+        again._fit(samples.q, samples.torque, samples.weights, near)
+        if not again.verdict_.accepted:
+            return None
+        again.causes_ = found.causes
+        return again
 
     def beside(self) -> BesideChain:
-        """What the samples show beside the chain, and what they leave room for.
+        """Constants, springs and cables that the samples leave room for beside the chain.
 
         Raises
         ------
@@ -313,6 +382,24 @@ class RigidChain(TorqueRegressor, SavedLearner):
         require_fitted(self)
         return self.fit_.samples.q.min(axis=0), self.fit_.samples.q.max(axis=0)
 
+    def _diagnosed(self) -> Diagnosis:
+        fit = self.fit_
+        samples = fit.samples
+        if fit.verdict is FitStatus.ROUNDING:
+            return Diagnosis((), True, False, samples.torque_noise, None)
+        offsets = [Term(Shape.CONSTANT, column.joint) for column in fit.model.columns]
+        gains = [Term(Shape.GAIN, int(j)) for j in np.flatnonzero(fit.model.free_gains)]
+        return diagnose(
+            samples.q,
+            samples.torque,
+            torque_noise=self.torque_noise,
+            angle_noise=self.angle_noise,
+            parents=self.parents,
+            known=[fit.chain],
+            included=[*offsets, *gains],
+            random_state=self.random_state,
+        )
+
     def _require_accepted(self) -> None:
         require_fitted(self)
         if not self.fit_.verdict.accepted:
@@ -353,7 +440,9 @@ class RigidChain(TorqueRegressor, SavedLearner):
         return self
 
     def _take(self, fit: ChainFit) -> None:
-        self.fit_, self._errors, self._snapped, self._beside = fit, None, None, None
+        self.fit_, self._errors, self._snapped = fit, None, None
+        self.causes_: tuple[Cause, ...] = ()
+        self._beside, self._diagnosis = None, None
 
     def parameters(self) -> dict[str, Any]:
         """Settings and counters as plain numbers (JSON)."""
@@ -369,6 +458,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
             "starts": fit.starts,
             "p_value": None if np.isnan(fit.p_value) else fit.p_value,
             "held_out": None if np.isnan(fit.held_out) else fit.held_out,
+            "causes": [cause.as_json() for cause in self.causes_],
             "groups": [[list(g.joints), g.scale_known] for g in self.gain_groups_],
         }
 
@@ -400,6 +490,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
             )
         )
         self.gain_groups_ = tuple(GainGroup(tuple(j), bool(k)) for j, k in state["groups"])
+        self.causes_ = tuple(Cause.from_json(found) for found in state.get("causes", ()))
 
     def _check_parameters(self) -> None:
         starts, window = self.max_starts, self.window
@@ -420,11 +511,17 @@ class RigidChain(TorqueRegressor, SavedLearner):
                 k is None or (np.isfinite(k) and k != 0) for k in known
             )
             require(self, "known_gains", good, f"{joints} numbers other than 0, or None")
+        offsets = self.unknown_offsets
+        if isinstance(offsets, bool | np.bool_):
+            offsets = [bool(offsets)] * joints
+        require(
+            self, "unknown_offsets", len(offsets) == joints, f"True, False, or {joints} of them"
+        )
         self._model = ChainModel(
             parents,
             np.array([1.0 if k is None else k for k in known], dtype=float),
             np.array([self.unknown_gains and k is None for k in known], dtype=bool),
-            offset_columns(joints) if self.unknown_offsets else (),
+            tuple(c for c, wanted in zip(offset_columns(joints), offsets, strict=True) if wanted),
         )
         self._flat = flat
         self.n_outputs_ = outputs

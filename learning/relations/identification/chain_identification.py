@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.planning.poses_needed import fewest_poses
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
-from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain
 from isotorque.learning.relations.examined_fit import LARGEST_ERROR, could_be_wrong
 from isotorque.learning.relations.identification.unfelt_levers import unfelt_lever
 from isotorque.learning.relations.learned_symmetries import (
@@ -21,8 +20,11 @@ from isotorque.learning.relations.learned_symmetries import (
 )
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.learning.relations.static_samples import static_samples
+from isotorque.learning.statistics.causes.cause_words import causes_in_words
+from isotorque.learning.statistics.causes.diagnose import Diagnosis
 from isotorque.learning.statistics.lack_of_fit import LackOfFit
 from isotorque.learning.statistics.poses import by_pose
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 
 Array = NDArray[np.float64]
 
@@ -40,6 +42,7 @@ def identify_by_chain(
     *,
     noise: MeasurementNoise | None = None,
     parents: Sequence[int] | None = None,
+    any_chain: bool = True,
 ) -> LearnedSymmetries:
     """Find the symmetry group of the rigid chain behind static samples.
 
@@ -53,6 +56,9 @@ def identify_by_chain(
         Noise levels where known; estimated otherwise.
     parents : sequence of int, optional
         Joint that carries each joint, -1 for the base; in series by default.
+    any_chain : bool
+        Also where samples are those of a rigid chain only with a gain or a sign that was measured
+        otherwise. False where another form of gravity explains them without.
 
     Returns
     -------
@@ -81,9 +87,12 @@ def identify_by_chain(
     '1 more poses: 3 different ones were given, 4 are needed'
     """
     configurations, torques = static_samples(q, tau)
+    n = configurations.shape[1]
     learner = chain_of_samples(configurations, torques, noise=noise, parents=parents)
     if isinstance(learner, str):
-        return nothing_learned(configurations.shape[1], learner, METHOD)
+        return nothing_learned(n, learner, METHOD)
+    if not (any_chain or learner.verdict_.accepted):
+        return nothing_learned(n, learner.remark_, METHOD)
     return relations_of_chain(learner)
 
 
@@ -93,7 +102,6 @@ def chain_of_samples(
     *,
     noise: MeasurementNoise | None = None,
     parents: Sequence[int] | None = None,
-    unknown_offsets: bool = False,
 ) -> RigidChain | str:
     """Fit a chain to the poses of samples, if these are of torques enough.
 
@@ -103,8 +111,6 @@ def chain_of_samples(
         Rows [rad], [N m].
     noise, parents
         As of `identify_by_chain`.
-    unknown_offsets
-        Whether every joint may have a constant torque.
 
     Returns
     -------
@@ -126,7 +132,6 @@ def chain_of_samples(
         parents,
         torque_noise=None if noise is None else noise.torque,
         angle_noise=0.0 if noise is None else noise.angle,
-        unknown_offsets=unknown_offsets,
         max_starts=STARTS,
     ).fit(configurations[taken], torques[taken])
 
@@ -159,15 +164,15 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
     LearnedSymmetries
         As of `identify_by_chain`.
     """
-    samples = learner.fit_.samples
-    missing, lack = obstacle(learner)
+    learner, missing, lack = explained(learner)
+    n, samples = learner.fit_.model.n, learner.fit_.samples
     if missing:
-        return nothing_learned(samples.n, missing, METHOD, lack=lack)
+        return nothing_learned(n, missing, METHOD, lack=lack)
     found = learner.symmetries()
     excess = float(found.gravity_bounds.max()) / (LARGEST_ERROR * samples.largest_torque)
     if excess > 1.0:
         missing = could_be_wrong(len(samples.q), excess)
-        return nothing_learned(samples.n, missing, METHOD)
+        return nothing_learned(n, missing, METHOD)
     relations = tuple(
         LearnedRelation(
             relation,
@@ -178,46 +183,82 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
             snapped=bool(found.snapped.hypotheses),
         )
         for relation in found.group
+        if lack is None or (relation.Y[lack.offset_joints] > 0.0).all()
     )
-    return LearnedSymmetries(found.group, relations, None, METHOD, chain=learner)
+    return LearnedSymmetries(
+        SymmetryGroup([entry.relation for entry in relations]),
+        relations,
+        None,
+        METHOD,
+        lack=lack,
+        of_gravity_alone=found.group.order - len(relations),
+        chain=learner,
+    )
 
 
-def obstacle(learner: RigidChain) -> tuple[str, LackOfFit | None]:
-    """What stands in the way of claims from a chain that was fitted to samples.
+def explained(learner: RigidChain) -> tuple[RigidChain, str, LackOfFit | None]:
+    """A chain, with what its samples show beside it, and what stands in the way of claims.
+
+    Parameters
+    ----------
+    learner : RigidChain
+        Fitted to samples, accepted or not.
 
     Returns
     -------
+    learner : RigidChain
+        With the constants and gains that the samples show.
     missing : str
-        Empty where nothing does.
+        What stands in the way; empty where nothing does.
     lack : LackOfFit or None
-        What the samples show beside the chain, where that is the reason.
+        What the samples show beside gravity.
     """
-    samples = learner.fit_.samples
+    n, verdict, lack = learner.fit_.model.n, learner.verdict_, None
+    if not (verdict.accepted or verdict is FitStatus.MISFIT):
+        return learner, learner.remark_, None
+    diagnosis = learner.diagnosis()
+    if diagnosis.causes and (verdict.accepted or diagnosis.clear):
+        extended = learner.with_causes()
+        if extended is None:
+            lack = _lack_of_fit(diagnosis, n)
+            return learner, f"an arm whose torque is rigid gravity: there is {lack.said}", lack
+        learner, lack = extended, _constants(extended)
     if not learner.verdict_.accepted:
-        return learner.remark_, None
+        return learner, learner.remark_, None
     joint = unfelt_lever(learner.fit_)
     if joint is not None:
         missing = (
             f"torque on joint {joint + 1}: it held none in all samples, and what it carries may "
             "have been balanced there alone"
         )
-        return missing, None
+        return learner, missing, None
     beside = learner.beside()
-    if beside.said:
-        lack = _lack_of_fit(beside)
-        return f"an arm whose torque is rigid gravity: there is {lack.said}", lack
     if not beside.complete and learner.verdict_ is not FitStatus.ROUNDING:
-        given, needed = len(samples.q), beside.samples_needed
+        given, needed = len(learner.fit_.samples.q), beside.samples_needed
         missing = (
             f"{needed - given} more samples: {given} different ones were given, which a chain does "
             f"not explain exactly; {needed} show whether noise does, or a spring or a cable"
         )
-        return missing, None
-    return "", None
+        return learner, missing, None
+    return learner, "", lack
 
 
-def _lack_of_fit(beside: BesideChain) -> LackOfFit:
+def _constants(chain: RigidChain) -> LackOfFit:
+    """Constants and gains that a chain contains beside gravity."""
+    n = chain.fit_.model.n
+    joints = np.array(sorted({column.joint for column in chain.fit_.model.columns}), dtype=int)
+    errors = np.zeros(n)
+    errors[joints] = chain.fit_.offset_errors[joints]
+    said = causes_in_words(chain.causes_)
+    return LackOfFit(joints, chain.chain_.offsets, errors, (), np.zeros(n), said)
+
+
+def _lack_of_fit(diagnosis: Diagnosis, joints: int) -> LackOfFit:
     """What the samples show beside a chain."""
-    worst = min(beside.terms, key=lambda term: term.p_value)
-    none = np.zeros(len(worst.misfit))
-    return LackOfFit(np.array([], dtype=int), none, none, (), worst.misfit, beside.said)
+    misfit = np.zeros(joints)
+    for cause in diagnosis.causes:
+        concerned = cause.joints(joints)
+        misfit[concerned] = np.maximum(misfit[concerned], cause.effect)
+    none = np.zeros(joints)
+    said = causes_in_words(diagnosis.causes)
+    return LackOfFit(np.array([], dtype=int), none, none, (), misfit, said)

@@ -96,9 +96,14 @@ def identify(
         waves = identify_by_waves(configurations, torques, noise=noise)
         if _more_than_gravity(waves):
             return waves
-    chain = identify_by_chain(configurations, torques, noise=noise, parents=parents)
+    explained = waves is not None and waves.fit is not None
+    chain = identify_by_chain(
+        configurations, torques, noise=noise, parents=parents, any_chain=not explained
+    )
     if chain.decided:
         return chain if waves is None else _agreed(chain, waves)
+    if chain.lack is not None and chain.lack.failed:
+        return chain
     if waves is None:
         waves = identify_by_waves(configurations, torques, noise=noise)
     return _without_chain(chain, waves)
@@ -123,13 +128,14 @@ def _without_chain(chain: LearnedSymmetries, waves: LearnedSymmetries) -> Learne
 def _agreed(chain: LearnedSymmetries, waves: LearnedSymmetries) -> LearnedSymmetries:
     """The relations of a chain, if waves do not contradict them."""
     fit = waves.fit
-    if fit is None:
+    if fit is None or chain.lack is not None:
         return chain
     group = candidates_of(chain.group)
     whole = fit_group(fit, group)
     if whole.p_value < SIGNIFICANCE:
         return _common(chain, waves, whole.p_value)
-    if waves.decided and waves.order > chain.order:
+    better = waves.order > chain.order or waves.group.rank < chain.group.rank
+    if waves.decided and better:  # a chain that nearly fits some other arm sees less
         return waves
     relations = tuple(
         dataclasses.replace(entry, standard_error=error, p_value=min(entry.p_value, whole.p_value))

@@ -24,7 +24,7 @@ from isotorque.learning.relations.claim_bounds import claim_bounds
 from isotorque.learning.relations.examined_fit import ExaminedFit, examined_fit
 from isotorque.learning.relations.identification.chain_identification import (
     chain_of_samples,
-    obstacle,
+    explained,
 )
 from isotorque.learning.relations.identification.group_fit import torque_uncertainty
 from isotorque.learning.relations.identification.identify import SECOND_OPINION
@@ -235,15 +235,12 @@ def _waves(q: Array, tau: Array, noise: MeasurementNoise | None) -> _Waves | str
 
 
 def _chain(q: Array, tau: Array, noise: MeasurementNoise | None) -> _Chain | str:
-    """A chain, with constant torques where there is none without."""
-    first = ""
-    for unknown_offsets in (False, True):
-        learner = chain_of_samples(q, tau, noise=noise, unknown_offsets=unknown_offsets)
-        missing = learner if isinstance(learner, str) else obstacle(learner)[0]
-        if not missing and isinstance(learner, RigidChain):
-            return _Chain(learner)
-        first = first or missing
-    return first
+    """A chain, with the constants and gains that samples show beside it."""
+    learner = chain_of_samples(q, tau, noise=noise)
+    if isinstance(learner, str):
+        return learner
+    learner, missing, _ = explained(learner)
+    return missing or _Chain(learner)
 
 
 def _points(n: int) -> Array:

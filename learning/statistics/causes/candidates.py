@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.statistics.causes.extensible_model import ExtendedFit, ExtensibleModel, F
-from isotorque.learning.statistics.causes.extension import Extension, Kind
+from isotorque.learning.statistics.causes.extension import Extension, Kind, Shape
 
 Array = NDArray[np.float64]
 
@@ -27,17 +27,14 @@ EVERYWHERE = (Kind.OFFSET, Kind.GAIN, Kind.FRICTION)
 """Kinds that all joints may have at once."""
 
 
-def candidates(
-    model: ExtensibleModel[F], fit: F, chosen: Sequence[Extension], explained: bool
-) -> list[Extension]:
+def candidates(model: ExtensibleModel[F], fit: F, explained: bool) -> list[Extension]:
     """Causes that could be added to a fit.
 
     Parameters
     ----------
     model : ExtensibleModel
     fit : ExtendedFit
-        With what was chosen before.
-    chosen : sequence of Extension
+        With what it contains already.
     explained : bool
         Whether the fit explains the samples: otherwise what it leaves says nothing of the noise.
     """
@@ -59,7 +56,7 @@ def candidates(
         Kind.SCALE: felt,
         Kind.COMPLIANCE: loaded,
     }
-    have = {term for extension in chosen for term in extension.terms}
+    have = set(fit.terms)
     found = []
     for kind, where in possible.items():
         if kind not in model.kinds:
@@ -70,11 +67,10 @@ def candidates(
             joints.remove(int(np.argmax(size)))
         if kind in EVERYWHERE and len(joints) > 1:
             found.append(Extension.everywhere(kind, joints))
-    if Kind.PAYLOAD in model.kinds:
+    loads = any(term.shape is Shape.LOAD for term in fit.terms)
+    if Kind.PAYLOAD in model.kinds and not loads:
         splits = sorted({int(len(model.q) * part) for part in SPLITS} - {0})
         found += [Extension.payload(first) for first in splits]
-    if any(extension.kind is Kind.PAYLOAD for extension in chosen):
-        found = [extension for extension in found if extension.kind is not Kind.PAYLOAD]
     return [extension for extension in found if not set(extension.terms) <= have]
 
 

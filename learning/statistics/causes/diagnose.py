@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +19,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
-from isotorque.learning.statistics.causes.extension import Kind
+from isotorque.learning.statistics.causes.extension import Kind, Term
 from isotorque.learning.statistics.causes.selection import Choice, Selection, selected
 from isotorque.learning.statistics.poses import group_poses
 from isotorque.symbolic.common.single_thread import single_thread
@@ -27,6 +28,11 @@ Array = NDArray[np.float64]
 
 SPARE_POSES = 2
 """Poses more than determine a chain, from which causes are looked for."""
+
+
+MUCH = 5.0
+"""Times that causes must lower what a chain leaves of the joint it explains worst, to make a chain
+of samples that are none as they stand: an arm that is no chain comes nearer with any cause."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +62,36 @@ class Cause:
     effect: float
     rivals: tuple[tuple[Kind, int | None], ...]
 
+    def as_json(self) -> dict[str, Any]:
+        """Everything as plain numbers and names; joints from 0."""
+        return {
+            "kind": str(self.kind),
+            "joint": self.joint,
+            "size": self.size.tolist(),
+            "standard_error": [x if np.isfinite(x) else None for x in self.standard_error],
+            "p_value": self.p_value,
+            "effect": self.effect,
+            "rivals": [[str(kind), joint] for kind, joint in self.rivals],
+        }
+
+    @classmethod
+    def from_json(cls, found: Mapping[str, Any]) -> Cause:
+        """Inverse of `as_json`."""
+        error = [np.inf if x is None else x for x in found["standard_error"]]
+        return cls(
+            Kind(found["kind"]),
+            found["joint"],
+            np.array(found["size"], dtype=float),
+            np.array(error, dtype=float),
+            float(found["p_value"]),
+            float(found["effect"]),
+            tuple((Kind(kind), joint) for kind, joint in found["rivals"]),
+        )
+
+    def joints(self, count: int) -> list[int]:
+        """Joints (from 0) of an arm of so many that it concerns."""
+        return list(range(count)) if self.joint is None else [self.joint]
+
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
@@ -69,6 +105,8 @@ class Diagnosis:
         Whether chain and causes explain the samples but for noise.
     noise : (n,) array
         Standard deviation of the torque errors, stated or estimated [N m].
+    clear : bool
+        Whether they do, and leave far less than a chain alone: `MUCH` times.
     selection : Selection or None
         The fit; None where there are too few poses for a diagnosis.
     missing : str
@@ -77,6 +115,7 @@ class Diagnosis:
 
     causes: tuple[Cause, ...]
     adequate: bool
+    clear: bool
     noise: Array
     selection: Selection[ExtendedChain] | None
     missing: str = ""
@@ -92,6 +131,7 @@ def diagnose(
     angle_noise: float | Sequence[float] = 0.0,
     parents: Sequence[int] | None = None,
     known: Sequence[ChainParameters] = (),
+    included: Sequence[Term] = (),
     random_state: int = 0,
 ) -> Diagnosis:
     """Name what explains a recording beside the gravity of a rigid chain.
@@ -110,6 +150,8 @@ def diagnose(
         Joint that carries each joint, -1 for the base; in series by default.
     known : sequence of ChainParameters
         Chains to start from, where some were fitted before.
+    included : sequence of Term
+        Causes that are known to be there, whatever their size: they are not named.
     random_state : int
         Seed of the random starts.
 
@@ -163,22 +205,26 @@ def diagnose(
         missing = f"{needed - given} more poses: {given} different ones were given"
         if not torques.any():
             missing = "samples with a torque"
-        return Diagnosis((), False, samples.torque_noise, None, missing)
+        return Diagnosis((), False, False, samples.torque_noise, None, missing)
     model = ExtensibleChain(
         samples,
         family,
         sides,
         torque_noise is not None,
+        bool(samples.angle_noise.any()),
         np.random.default_rng(random_state),
     )
-    alone = model.alone(known)
+    alone = model.alone(known, included)
     model = model.reweighted(alone)
     if not model.noise_known:
-        alone = model.alone([alone.chain], AGAIN)
+        alone = model.alone([alone.chain], included, AGAIN)
     selection = selected(model, alone)
     causes = tuple(_cause(selection, choice) for choice in selection.choices)
-    noise = selection.model.noise
-    return Diagnosis(causes, selection.adequate, noise, selection)
+    left = np.sqrt(np.mean(selection.fit.rest**2, axis=0))
+    joint = int(np.argmax(np.sqrt(np.mean(alone.rest**2, axis=0))))
+    before = float(np.sqrt(np.mean(alone.rest[:, joint] ** 2)))
+    clear = selection.adequate and before > MUCH * float(left[joint])
+    return Diagnosis(causes, selection.adequate, clear, selection.model.noise, selection)
 
 
 def _by_pose_and_side(

@@ -13,8 +13,9 @@ from isotorque.learning.statistics.causes.candidates import candidates, explaine
 from isotorque.learning.statistics.causes.extensible_model import ExtendedFit, ExtensibleModel, F
 from isotorque.learning.statistics.causes.extension import Extension, Kind, Term
 
-FAMILY_WISE = 0.01
-"""Chance that anything is named where there is nothing, over all candidates."""
+FAMILY_WISE, LATER = 0.01, 0.001
+"""Chance that anything is named where there is nothing, over all candidates; that anything is
+named beside the first cause where there is nothing else."""
 TIED = 6.0
 """Candidates whose scores (2 log Bayes factor) differ by less cannot be told apart."""
 MOST = 3
@@ -108,7 +109,7 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
     ----------
     model : ExtensibleModel
     null : ExtendedFit
-        Of the model alone.
+        Of the model alone, with what it contains anyway.
 
     Notes
     -----
@@ -123,13 +124,13 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
     fit = null
     choices: list[Choice] = []
     for _ in range(MOST):
-        chosen = [choice.extension for choice in choices]
-        fit, found, tried = _best(model, fit, chosen)
+        fit, found, tried = _best(model, fit)
         if not found:
             break
         best, rivals = _simplest(found)
         log_p = best.log_p + np.log(tried)
-        if log_p >= np.log(FAMILY_WISE) or best.score <= 0.0:
+        level = LATER if choices else FAMILY_WISE
+        if log_p >= np.log(level) or best.score <= 0.0:
             break
         largest = float(np.abs(model.torque).max())
         if np.abs(best.fit.effect(best.extension.terms)).max() < NEGLIGIBLE * largest:
@@ -141,7 +142,7 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
         fit = model.refitted(fit.terms, fit, thorough=True)
         if best.extension.kind is Kind.PAYLOAD:
             break
-    fit, choices = _without_superfluous(model, fit, choices)
+    fit, choices = _without_superfluous(model, fit, choices, null.terms)
     return Selection(model, fit, tuple(choices), is_adequate(model, fit))
 
 
@@ -153,12 +154,10 @@ def is_adequate(model: ExtensibleModel[F], fit: F) -> bool:
     return bool(left < ADEQUATE_SHARE * size)
 
 
-def _best(
-    model: ExtensibleModel[F], fit: F, chosen: Sequence[Extension]
-) -> tuple[F, list[Candidate[F]], int]:
+def _best(model: ExtensibleModel[F], fit: F) -> tuple[F, list[Candidate[F]], int]:
     """The fit without more causes, candidates by score, and how many were tried."""
     adequate = is_adequate(model, fit)
-    possible = candidates(model, fit, chosen, adequate)
+    possible = candidates(model, fit, adequate)
     taken, degrees = explained_to_first_order(fit, possible)
     room = fit.spare - degrees >= model.q.shape[1]
     possible_ones = [
@@ -236,14 +235,14 @@ def _renamed(extension: Extension, fit: ExtendedFit) -> Extension:
 
 
 def _without_superfluous(
-    model: ExtensibleModel[F], fit: F, choices: list[Choice]
+    model: ExtensibleModel[F], fit: F, choices: list[Choice], always: tuple[Term, ...]
 ) -> tuple[F, list[Choice]]:
     """Drop causes that are not significant beside the others."""
     while len(choices) > 1:
-        tried = len(candidates(model, fit, [], is_adequate(model, fit)))
+        tried = len(candidates(model, fit, is_adequate(model, fit)))
         for i in range(len(choices)):
             kept = choices[:i] + choices[i + 1 :]
-            terms: tuple[Term, ...] = ()
+            terms = always
             for choice in kept:
                 terms = _with(terms, choice.extension)
             if len(terms) == len(fit.terms):

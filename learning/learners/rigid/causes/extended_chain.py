@@ -16,7 +16,10 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 )
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.compiled_fit import levenberg_marquardt
-from isotorque.learning.learners.rigid.fitting.noise_estimate import estimated_levels
+from isotorque.learning.learners.rigid.fitting.noise_estimate import (
+    estimated_angle_noise,
+    estimated_levels,
+)
 from isotorque.learning.learners.rigid.planning.information import Information
 from isotorque.learning.statistics.causes.extension import ADDED, Shape, Term, added_torque
 
@@ -28,6 +31,8 @@ SETTLED = 1e-4
 """Passes end when one changes the cost by a smaller share."""
 LARGEST_SCALE, LARGEST_SAG, LARGEST_GAIN = 0.3, 0.3, 10.0
 """Causes beyond are no causes: relative error of angles, sag [rad, RMS], gain."""
+ENOUGH = 100
+"""Samples from which the noise of angles is estimated, at most twice as many."""
 COLUMNS_KEPT = 1e-5
 """Combinations of columns (of length 1) that count, relative to the largest singular value."""
 
@@ -154,12 +159,21 @@ class ExtendedChain:
                 return False
         return bool(np.isfinite(self.cost))
 
-    def with_estimated_noise(self) -> ChainSamples:
-        """The samples with the noise of every joint that the residuals show."""
+    def with_estimated_noise(self, angles_known: bool) -> ChainSamples:
+        """The samples with the noise of torques, and of angles if not known, that is left."""
         samples = self.samples
         leverage = np.sum(self.basis**2, axis=1).reshape(samples.q.shape)
-        levels = estimated_levels(samples, self.rest, leverage, self.slopes.stiffness)
-        return samples.with_torque_noise(levels)
+        if angles_known:
+            levels = estimated_levels(samples, self.rest, leverage, self.slopes.stiffness)
+            return samples.with_torque_noise(levels)
+        exact = replace(samples, angle_noise=np.zeros(self.chain.n))
+        levels = estimated_levels(exact, self.rest, leverage, self.slopes.stiffness)
+        kept = np.maximum(1.0 - leverage.mean(axis=0), 1.0 / len(leverage))
+        step = max(1, len(leverage) // ENOUGH)
+        levels, angle = estimated_angle_noise(
+            (self.rest / np.sqrt(kept))[::step], self.slopes.stiffness[::step], levels
+        )
+        return replace(samples, torque_noise=levels, angle_noise=np.full(self.chain.n, angle))
 
 
 def fit_extended(

@@ -56,7 +56,8 @@ class ExtensibleChain:
         Parents of the joints.
     directions : (m, n) array or None
         Signs of the last motion of every joint.
-    noise_known : bool
+    noise_known, angles_known : bool
+        Whether the noise of torques, of angles, was stated.
     rng : numpy.random.Generator
         Of the random starts.
     """
@@ -65,6 +66,7 @@ class ExtensibleChain:
     family: ChainModel
     directions: Array | None
     noise_known: bool
+    angles_known: bool
     rng: np.random.Generator
     kinds: tuple[Kind, ...] = KINDS
 
@@ -83,13 +85,20 @@ class ExtensibleChain:
         """Standard deviation of the torque errors (n,) [N m]."""
         return np.maximum(self.samples.torque_noise, self.samples.floor)
 
-    def alone(self, known: Sequence[ChainParameters] = (), starts: int = STARTS) -> ExtendedChain:
-        """The best chain without causes.
+    def alone(
+        self,
+        known: Sequence[ChainParameters] = (),
+        terms: Sequence[Term] = (),
+        starts: int = STARTS,
+    ) -> ExtendedChain:
+        """The best chain without causes that are to be found.
 
         Parameters
         ----------
         known : sequence of ChainParameters
             Where to start from first.
+        terms : sequence of Term
+            What it contains anyway.
         starts : int
             Random starts at most.
         """
@@ -99,14 +108,14 @@ class ExtensibleChain:
         accepted = stats.chi2.isf(ACCEPTED, spare)
         for i in range(len(known) + starts):
             start = known[i] if i < len(known) else self._random_start()
-            found = part._from(start)
+            found = part._from(start, terms)
             if np.isfinite(found.cost) and (best is None or found.cost < best.cost):
                 best = found
             enough = self.noise_known and best is not None and best.cost < accepted
             if enough and i >= len(known):
                 break
         assert best is not None
-        return self.refitted((), best, thorough=True)
+        return self.refitted(terms, best, thorough=True)
 
     def refitted(
         self, terms: Sequence[Term], near: ExtendedChain, *, thorough: bool = False
@@ -143,7 +152,7 @@ class ExtensibleChain:
             return self
         model = self
         for _ in range(REWEIGHTINGS):
-            model = replace(model, samples=fitted.with_estimated_noise())
+            model = replace(model, samples=fitted.with_estimated_noise(self.angles_known))
             fitted = model.refitted(fitted.terms, fitted, thorough=True)
         return model
 
@@ -159,7 +168,11 @@ class ExtensibleChain:
     def _from(self, start: ChainParameters, terms: Sequence[Term] = ()) -> ExtendedChain:
         """The minimum that a start leads to."""
         whitening = self.samples.whitening(start if start.levers.any() else None)
-        return self._fitted(terms, start, whitening, None, (FRESH, QUICK[1]))
+        found = self._fitted(terms, start, whitening, None, (FRESH, QUICK[1]))
+        if self.samples.angle_noise.any() and np.isfinite(found.cost):
+            for _ in range(REWEIGHTINGS):  # weights follow from the chain
+                found = self.refitted(terms, found)
+        return found
 
     def _random_start(self) -> ChainParameters:
         return replace(

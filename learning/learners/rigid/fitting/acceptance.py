@@ -105,7 +105,11 @@ def fit_chain(
         return exact or fit.refused(FitStatus.MISFIT, _misfit(fit))
     fewer = _with_findable_gains(samples, model, CARRYING_SHARE[1])
     if not np.array_equal(fewer.free_gains, fit.model.free_gains):
+        known = [fit.best().chain] if fit.found else []
         fit.begin_anew(fewer)
+        for chain in known if warm is None else [warm, *known]:
+            gains = np.where(fewer.free_gains, chain.gains, fewer.gains)
+            fit.try_start(replace(chain, gains=gains), warm=True)
     return _by_held_out(fit)
 
 

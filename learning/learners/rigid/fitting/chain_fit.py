@@ -13,6 +13,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainPara
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
+from isotorque.learning.learners.rigid.fitting.joint_columns import Shape
 from isotorque.learning.learners.rigid.planning.information import Information
 
 Array = NDArray[np.float64]
@@ -83,6 +84,19 @@ class ChainFit:
             freedom = max(self.degrees / self.model.n, 1.0)
             return float(stats.t.isf(stats.norm.sf(3.0), freedom)) / 3.0
         return 1.0
+
+    @property
+    def offset_errors(self) -> Array:
+        """Standard errors of the offsets (n,) [N m]; 0 where none was asked for."""
+        result = np.zeros(self.model.n)
+        columns = self.model.columns
+        count = len(self.information.scale)
+        rows = np.eye(count)[count - len(columns) :]
+        spread = self.spread * np.sqrt(self.information.variance(rows))
+        for column, error in zip(columns, spread, strict=True):
+            if column.shape is Shape.OFFSET:
+                result[column.joint] = error
+        return result
 
     def standard_error(self, q: Array) -> Array:
         """Of the torques at q (m, n) [rad], (m, n) [N m]; inf where they are not determined."""

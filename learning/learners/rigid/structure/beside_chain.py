@@ -1,4 +1,4 @@
-"""Torques beside a fitted chain: what samples show of them, and what they leave room for."""
+"""Torques beside a fitted chain: what samples leave room for."""
 
 from __future__ import annotations
 
@@ -15,19 +15,13 @@ from isotorque.learning.statistics.added_terms import (
     SPARE,
     AddedTerms,
     added_terms,
-    in_words,
     second_harmonics,
     springs,
 )
-from isotorque.learning.statistics.constant_torques import constants_in_words
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]
 
-SIGNIFICANCE = 1e-3
-"""Chance with which samples of a rigid arm are said to show another torque, over all kinds."""
-NEGLIGIBLE = 1e-6
-"""Torques below this share of the largest are where motions ended; bounds allow for them."""
 WIDER = 1.2
 """Errors of these terms, to first order, are too small by so much where an arm hangs: it then moves
 little, and its chain gives way by more than its derivatives say (measured on the 3R)."""
@@ -50,21 +44,12 @@ class TermBeside:
         R with R R^T the covariance that they add in these coordinates, deviations included.
     largest : (n,) array
         Torque that each joint's may have [N m].
-    p_value : float
-        Chance of such an improvement, or a larger one, without them.
-    misfit : (n,) array
-        Root mean square over the samples of what they explain better [N m].
-    said : str
-        In words, with numbers.
     """
 
     kind: str
     change: Array
     root: Array
     largest: Array
-    p_value: float
-    misfit: Array
-    said: str
 
     def missed(self, relation: SymmetryRelation) -> Array:
         """How far the measured torque misses a relation of gravity through them, (n,) [N m]."""
@@ -81,20 +66,17 @@ class TermBeside:
 
 @dataclass(frozen=True, eq=False)
 class BesideChain:
-    """Torques beside a fitted chain, as samples show them.
+    """Torques beside a fitted chain that samples do not exclude.
 
     Attributes
     ----------
     terms : tuple of TermBeside
         Of all kinds that there were samples enough for.
-    said : str
-        What is there beside the chain, with its size; empty where samples show nothing.
     samples_needed : int
         Samples from which all kinds are tried.
     """
 
     terms: tuple[TermBeside, ...]
-    said: str
     samples_needed: int
 
     @property
@@ -104,7 +86,7 @@ class BesideChain:
 
 
 def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
-    """Look for constants, springs and cables that a chain cannot explain.
+    """Bound the constants, springs and cables that samples leave room for beside a chain.
 
     Parameters
     ----------
@@ -147,21 +129,12 @@ def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
         )
         if added is not None:
             terms.append(_term(kind, added, size, deviations))
-    worst = min(terms, key=lambda t: t.p_value, default=None)
-    seen = worst is not None and worst.p_value < SIGNIFICANCE / len(terms)
-    large = worst is not None and worst.misfit.max() > NEGLIGIBLE * samples.largest_torque
-    said = worst.said if worst is not None and seen and large else ""
     needed = -(-(information.rank + WIDEST * samples.n + SPARE) // samples.n)
-    return BesideChain(tuple(terms), said, needed)
+    return BesideChain(tuple(terms), needed)
 
 
 def _term(kind: str, added: AddedTerms, reach: Array, deviations: float) -> TermBeside:
     allowed = WIDER * quantile(deviations, added.freedom)
     values, vectors = np.linalg.eigh((added.more + added.more.T) / 2.0)
     root = allowed * vectors * np.sqrt(np.maximum(values, 0.0))
-    said = in_words(added, np.arange(len(reach)))
-    if kind == CONSTANT:
-        said = constants_in_words(added.outstanding(), added.terms[:, 0], added.errors[:, 0])
-    return TermBeside(
-        kind, added.change, root, added.largest(allowed, reach), added.p_value, added.misfit, said
-    )
+    return TermBeside(kind, added.change, root, added.largest(allowed, reach))

@@ -48,7 +48,7 @@ class ChainSymmetries:
         as large as the samples leave room for.
     gravity_bounds : (order, n) array
         The same of gravity alone, if the arm is a rigid chain [N m].
-    beside : BesideChain
+    shown : str
         What the samples show beside the chain: where they do, its relations are not to be claimed.
     corrections : (order, n) array
         c of each relation of the measured torque, ``tau' = Y tau + c`` [N m]: twice the offset of
@@ -61,7 +61,7 @@ class ChainSymmetries:
 
     group: SymmetryGroup
     gravity_bounds: Array
-    beside: BesideChain
+    shown: str
     corrections: Array
     snapped: SnappedChain
     alternatives: tuple[SymmetryGroup, ...] = ()
@@ -84,9 +84,9 @@ class ChainSymmetries:
     @property
     def _beside(self) -> str:
         """What the samples show beside the chain."""
-        if not self.beside.said:
+        if not self.shown:
             return ""
-        return f"; but the samples show {self.beside.said}: of gravity alone they may be true"
+        return f"; but the samples show {self.shown}: of gravity alone they may be true"
 
     @property
     def _object(self) -> str:
@@ -107,6 +107,7 @@ def chain_symmetries(
     errors: TorqueErrors,
     snapped: SnappedChain,
     beside: BesideChain,
+    shown: str,
     tolerance: float = 0.0,
 ) -> ChainSymmetries:
     """Derive the group of the snapped chain; bound its relations for the measured arm.
@@ -121,6 +122,8 @@ def chain_symmetries(
         Of the same fit.
     beside : BesideChain
         Of the same fit, at `DEVIATIONS`.
+    shown : str
+        What the samples show beside the chain, in words; empty where nothing.
     tolerance : float
         Also relations that err by no more in any torque of the snapped chain [N m].
 
@@ -154,7 +157,7 @@ def chain_symmetries(
         )
     offsets = fit.chain.offsets
     corrections = np.array([offsets - r.Y * offsets for r in bounded[0]])
-    return ChainSymmetries(bounded[0], gravity[0], beside, corrections, snapped, tuple(bounded[1:]))
+    return ChainSymmetries(bounded[0], gravity[0], shown, corrections, snapped, tuple(bounded[1:]))
 
 
 class RelationBounds:

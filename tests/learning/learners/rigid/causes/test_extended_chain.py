@@ -132,6 +132,6 @@ def test_noise_is_estimated_for_every_joint():
     zero = np.zeros(JOINTS)
     samples = ChainSamples(q, tau, zero, zero, np.ones(400))
     fit = fit_extended(samples, None, [], chain, samples.whitening(), iterations=100, progress=1e-8)
-    found = fit.with_estimated_noise().torque_noise
+    found = fit.with_estimated_noise(True).torque_noise
     # all joints count alike in this fit, so the noise of one spoils the torque of the others
     np.testing.assert_allclose(found, levels, rtol=0.3)

@@ -22,7 +22,7 @@ def model_of(poses, seed, known=True):
     noise = np.full(7, NOISE if known else 0.0)
     samples = ChainSamples(q, tau, noise, np.zeros(7), np.ones(poses))
     family = ChainModel(serial(7), np.ones(7), np.zeros(7, dtype=bool), ())
-    return ExtensibleChain(samples, family, None, known, np.random.default_rng(seed)), gravity
+    return ExtensibleChain(samples, family, None, known, True, np.random.default_rng(seed)), gravity
 
 
 @pytest.mark.parametrize("poses", [40, 3 * SEARCHED])

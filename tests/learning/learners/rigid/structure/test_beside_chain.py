@@ -1,7 +1,6 @@
-"""What a chain cannot explain is seen, named with its size, and no false alarm."""
+"""What samples leave room for beside a chain covers what is there."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,30 +17,11 @@ from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.learners.rigid.random_chains import KINDS, random_chain, random_poses
 
 NOISE = 0.05
-WORDS = {CONSTANT: "constant torque", SPRING: "spring", CABLE: "twice the angle"}
 
 
 def torque_beside(kind, q, joint, size):
     values = {CONSTANT: np.ones_like(q), SPRING: q, CABLE: np.sin(2.0 * q + 0.4)}[kind]
     return size * values * np.eye(q.shape[1])[joint]
-
-
-@pytest.mark.parametrize("kind", list(WORDS))
-@pytest.mark.parametrize("stated", [True, False])
-def test_it_is_named_with_its_size(kind, stated):
-    gravity = GravityModel(load_robot("panda"))
-    rng = np.random.default_rng(1)
-    q = random_poses(rng, 60, 7)
-    tau = (
-        gravity.torque(q)
-        + torque_beside(kind, q, 3, 0.2 if kind != SPRING else 0.1)
-        + NOISE * rng.normal(size=q.shape)
-    )
-    learner = RigidChain(torque_noise=2.0 * NOISE if stated else None, max_starts=60).fit(q, tau)
-    assert learner.verdict_.accepted  # it passes for noise
-    found = beside_chain(learner.fit_, 3.0)
-    assert WORDS[kind] in found.said
-    assert "on joint 4" in found.said
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 5), st.sampled_from(KINDS), st.booleans())
@@ -57,22 +37,7 @@ def test_exact_chains_have_nothing_beside_them(seed, n, kind, noisy):
     found = beside_chain(learner.fit_, 3.0)
     assert all(np.isfinite(term.largest).all() for term in found.terms)
     if not noisy:
-        assert found.said == ""
         assert max(term.largest.max() for term in found.terms) < 1e-6 * max(np.abs(tau).max(), 1.0)
-
-
-def test_noise_is_no_false_alarm():
-    alarms = sets = 0
-    for name in ("2r", "3r", "ur5"):
-        gravity = GravityModel(load_robot(name))
-        for seed in range(15):
-            rng = np.random.default_rng(seed)
-            q = random_poses(rng, 25, gravity.n)
-            tau = gravity.torque(q) + NOISE * rng.normal(size=q.shape)
-            learner = RigidChain(torque_noise=NOISE).fit(q, tau)
-            alarms += bool(beside_chain(learner.fit_, 3.0).said)
-            sets += 1
-    assert alarms <= 1
 
 
 def test_what_is_allowed_for_covers_what_is_there():
