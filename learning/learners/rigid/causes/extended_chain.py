@@ -30,7 +30,7 @@ PASSES = 6
 SETTLED = 1e-4
 """Passes end when one changes the cost by a smaller share."""
 LARGEST_SCALE, LARGEST_SAG, LARGEST_GAIN = 0.3, 0.3, 10.0
-"""Causes beyond are no causes: relative error of angles, sag [rad, RMS], gain."""
+"""Causes beyond are no causes: relative error of angles, sag [rad, RMS], gain or its inverse."""
 ENOUGH = 100
 """Samples from which the noise of angles is estimated, at most twice as many."""
 COLUMNS_KEPT = 1e-5
@@ -150,7 +150,8 @@ class ExtendedChain:
         """Whether all causes are as small as causes are."""
         size = np.sqrt(np.mean(self.samples.torque**2, axis=0))
         for term in self.terms:
-            if term.shape is Shape.GAIN and abs(self.chain.gains[term.place]) > LARGEST_GAIN:
+            gain = abs(self.chain.gains[term.place]) if term.shape is Shape.GAIN else 1.0
+            if not 1.0 / LARGEST_GAIN < gain < LARGEST_GAIN:  # 0: a sensor that does not read
                 return False
             if term.shape is Shape.SCALE and abs(self.values[term][0]) > LARGEST_SCALE:
                 return False

@@ -1,5 +1,7 @@
 """Chains with causes: derivatives are right, and each cause is found with its size."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -121,6 +123,19 @@ def test_causes_beyond_what_causes_are_are_not_plausible():
         values = {term: np.array([size])}
         fit = ExtendedChain(samples, None, (term,), chain, values, 1.0, samples.whitening())
         assert fit.plausible() is good
+
+
+@pytest.mark.parametrize(
+    ("gain", "good"), [(0.2, True), (-5.0, True), (0.05, False), (20.0, False)]
+)
+def test_a_sensor_that_does_not_read_has_no_gain(gain, good):
+    rng = np.random.default_rng(0)
+    chain = random_chain(rng, JOINTS, "random")
+    samples = exact_samples(rng, chain)
+    term = Term(Shape.GAIN, 1)
+    moved = replace(chain, gains=np.array([1.0, gain, 1.0]))
+    fit = ExtendedChain(samples, None, (term,), moved, {}, 1.0, samples.whitening())
+    assert fit.plausible() is good
 
 
 def test_noise_is_estimated_for_every_joint():
