@@ -95,8 +95,8 @@ def examined_fit(q: Array, tau: Array, noise: MeasurementNoise | None) -> Examin
     ------
     Undetermined
         If the poses do not determine the potential, or not whether a joint matters; and if they
-        are too few to see every kind of torque beside gravity. Then only samples that are explained
-        to rounding say that there is none: errors of anything else look like noise.
+        are too few to bound every kind of torque beside gravity. Then only samples that are
+        explained to rounding say that there is none: errors of anything else look like noise.
     """
     poses, q, torques = by_pose(q, tau)
     fit, unmoved = fit_on_active_joints(q, torques, noise, LARGEST_ERROR)
@@ -106,8 +106,8 @@ def examined_fit(q: Array, tau: Array, noise: MeasurementNoise | None) -> Examin
         least = samples_for_alternatives(fit)
         raise Undetermined(
             f"{least - fit.samples} more samples: {fit.samples} different ones were given, which "
-            f"rigid gravity and constants do not explain exactly; {least} show whether noise does, "
-            "or a spring or a cable"
+            f"rigid gravity and constants do not explain exactly; {least} show how large a spring "
+            "or a cable may be"
         )
     return ExaminedFit(fit, lack, unmoved)
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.relations.potential.potential_fit import tail_probability
+from isotorque.learning.statistics.hidden_effect import hidden_effect
 
 Array = NDArray[np.float64]
 
@@ -35,6 +36,9 @@ class AddedTerms:
         Chance of such an improvement, or a larger one, if the terms are not there.
     misfit : (k,) array
         Root mean square over the samples of what they explain better [N m].
+    bounded : bool
+        Whether samples are too few to estimate them beside noise, and only tell how large they may
+        be at most: estimates are zero then, and nothing is tested.
     """
 
     terms: Array
@@ -44,6 +48,7 @@ class AddedTerms:
     freedom: float
     p_value: float
     misfit: Array
+    bounded: bool = False
 
     def largest(self, deviations: float, reach: Array) -> Array:
         """Largest torque (k,) [N m] so many standard errors allow, functions as large as reach."""
@@ -65,6 +70,7 @@ def added_terms(
     *,
     floor: float,
     known_noise: bool,
+    allowed: float | None = None,
 ) -> AddedTerms | None:
     """Try terms on every joint beside a model.
 
@@ -83,14 +89,25 @@ def added_terms(
         was given too small is no further term).
     known_noise : bool
         Whether the noise level was given; otherwise every joint has one of its own.
+    allowed : float, optional
+        Standard errors that are allowed for afterwards. If given, terms that leave too few degrees
+        of freedom to know the noise are bounded: so many of their ``errors`` are the bound.
 
     Returns
     -------
     AddedTerms or None
         None where the samples are too few.
+
+    Notes
+    -----
+    Terms are bounded by the whole residual, be it noise or what the model leaves of them: larger
+    ones would leave as little with a chance of no more than three standard errors', however large
+    the noise is (`hidden_effect`).
     """
     count, k, width = values.shape
-    if count * k < design.shape[1] + k * width + SPARE:
+    left_over = count * k - design.shape[1] - k * width
+    bounded = left_over < SPARE
+    if left_over < (0 if allowed is not None else SPARE):
         return None
     span, root = np.linalg.qr(design)
     size = np.sqrt(np.mean(values**2, axis=0)) + 1e-300  # (k, width)
@@ -104,6 +121,23 @@ def added_terms(
     whole = np.linalg.norm(columns, axis=0).max()
     seen = singular > DEPENDENT * whole
     left, singular, right = left[:, seen], singular[seen], right[seen]
+    if bounded:
+        assert allowed is not None
+        free = count * k - span.shape[1]
+        size_left = np.sqrt(max(float(residual @ residual), free * floor))
+        error = hidden_effect(free) * size_left / allowed
+        back, effect = right.T / singular, np.linalg.solve(root, held)
+        covariance = error**2 * back @ back.T
+        return AddedTerms(
+            np.zeros((k, width)),
+            np.sqrt(np.diag(covariance)).reshape(k, width) / size,
+            np.zeros(design.shape[1]),
+            effect @ covariance @ effect.T,
+            np.inf,
+            1.0,
+            np.zeros(k),
+            bounded=True,
+        )
     coordinates = left.T @ residual
     rest = residual - left @ coordinates
     lever = (span**2).sum(axis=1) + (left**2).sum(axis=1)

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
 from isotorque.learning.statistics.added_terms import (
-    SPARE,
     added_terms,
     in_words,
     second_harmonics,
@@ -53,6 +52,8 @@ class Alternative:
         Root mean square over the samples of what the terms explain better [N m].
     said : str
         The terms in words, with numbers.
+    bounded : bool
+        Whether samples were too few to look for them, and only bound them.
     """
 
     name: str
@@ -61,6 +62,7 @@ class Alternative:
     p_value: float
     misfit: Array
     said: str
+    bounded: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +131,8 @@ def lack_of_fit(
     noise level of each joint, of its own (F distributed; chi-square where the noise is known).
     Where poses repeat, the scatter within poses says how large the residuals may be [1]_; that also
     finds what has no name. With too few samples for a term it is not tried: then there are only a
-    few degrees of freedom, and Student's factors are large.
+    few degrees of freedom, and Student's factors are large; with a few less than a test takes, it
+    is only said how large they may be for residuals as small as these.
 
     References
     ----------
@@ -182,10 +185,10 @@ def lack_of_fit(
 
 
 def samples_for_alternatives(fit: FittedPotential) -> int:
-    """Samples from which every alternative is tried."""
+    """Samples from which every alternative is bounded."""
     samples = fit.whitened
     joints = len(samples.joints)
-    return -(-(samples.design.shape[1] + WIDEST * joints + SPARE) // joints)
+    return -(-(samples.design.shape[1] + WIDEST * joints) // joints)
 
 
 def _listed(values: Array) -> str:
@@ -230,6 +233,7 @@ def _alternative(
         values,
         floor=1.0 if known else samples.floor,
         known_noise=known,
+        allowed=deviations,
     )
     if added is None:
         return None
@@ -248,7 +252,7 @@ def _alternative(
     misfit[samples.joints] = added.misfit
     largest[samples.joints] = added.largest(deviations, reach)
     said = in_words(added, samples.joints)
-    return Alternative(name, extended, largest, added.p_value, misfit, said)
+    return Alternative(name, extended, largest, added.p_value, misfit, said, added.bounded)
 
 
 def _root(root: Array, more: Array) -> Array:

@@ -197,6 +197,26 @@ STATISTICS = (
         "a torque that an arm did not hold is not commanded again",
     ),
     Mutation(
+        "learning/statistics/added_terms.py",
+        "error = hidden_effect(free) * size_left / allowed",
+        "error = size_left / allowed / 4.0",
+        (
+            "tests/learning/statistics/test_added_terms.py"
+            "::test_terms_that_are_only_bounded_are_within_their_bound",
+        ),
+        "terms that are only bounded may be as large as residuals leave room for",
+    ),
+    Mutation(
+        "learning/relations/identification/wave_identification.py",
+        "if any(other.bounded for other in lack.alternatives):",
+        "if False:",
+        (
+            "tests/learning/relations/test_examined_fit.py"
+            "::test_fewest_samples_with_errors_are_enough_where_sensors_are_nearly_exact",
+        ),
+        "what few samples hide has to be small for a claim",
+    ),
+    Mutation(
         "learning/relations/examined_fit.py",
         "if len(lack.alternatives) < KINDS and not _explained(fit, torques):",
         "if False:",

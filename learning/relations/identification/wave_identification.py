@@ -186,6 +186,9 @@ def claim(examined: ExaminedFit, best: GroupFit, snap: bool) -> LearnedSymmetrie
     size = fit.rms_torque()
     involved = group.basis.any(axis=0)
     excess = float((rms / np.where(size > 0.0, size, np.inf))[:, involved].max(initial=0.0))
+    if any(other.bounded for other in lack.alternatives):
+        # what was not looked for must not matter: the bound itself has to be small
+        excess = max(excess, float(bound.max(initial=0.0)) / float(size.max()))
     excess /= LARGEST_ERROR
     if excess > 1.0:
         missing = could_be_wrong(fit.samples, excess)

@@ -39,6 +39,31 @@ def test_too_few_samples_say_nothing():
     assert found is None
 
 
+@given(st.integers(0, 2**32 - 1), st.floats(-4.0, 4.0), st.integers(2, 6))
+@settings(max_examples=60)
+def test_terms_that_are_only_bounded_are_within_their_bound(seed, logarithm, joints):
+    """Two less samples than a test takes; of terms alone, as noise may cancel them by chance."""
+    rng = np.random.default_rng(seed)
+    count, parameters = 4, 2 * joints
+    design = rng.normal(size=(count * joints, parameters))
+    values = rng.normal(size=(count, joints, 2))
+    values[:, :, 1] += 1e-3
+    whitening = np.tile(np.eye(joints), (count, 1, 1))
+    terms = 10.0**logarithm * rng.normal(size=(joints, 2))
+    target = np.einsum("Nkw,kw->Nk", values, terms).ravel()
+    left = target - design @ np.linalg.lstsq(design, target, rcond=None)[0]
+    given_ = {"floor": 1e-300, "known_noise": False}
+    assert added_terms(design, left, whitening, values, **given_) is None
+    found = added_terms(design, left, whitening, values, allowed=3.0, **given_)
+    assert found.bounded
+    assert (np.abs(terms) <= 3.0 * found.errors).all()
+    changed = design @ np.linalg.lstsq(design, target, rcond=None)[0]
+    sizes = 3.0 * np.sqrt(np.einsum("ij,jk,ik->i", design, found.more, design))
+    assert (np.abs(changed) <= sizes).all()
+    twice = added_terms(design, left, whitening, values, allowed=6.0, **given_)
+    np.testing.assert_allclose(2.0 * twice.errors, found.errors)
+
+
 def test_terms_that_the_model_has_already_are_not_counted():
     rng = np.random.default_rng(0)
     design = np.ones((20, 1))
