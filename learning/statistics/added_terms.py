@@ -82,8 +82,9 @@ def added_terms(
         What the model leaves, whitened.
     whitening : (N, k, k) array
         What torques are multiplied with.
-    values : (N, k, w) array
-        Functions of the terms at the samples.
+    values : (N, k, w) or (N, k, k, w) array
+        Functions of the terms at the samples: torque of the joint itself; or of all joints (second
+        axis) for one unit of a term of one joint (third axis).
     floor : float
         Least mean square of a residual: what arithmetic leaves, or 1 for known noise (noise that
         was given too small is no further term).
@@ -104,14 +105,16 @@ def added_terms(
     ones would leave as little with a chance of no more than three standard errors', however large
     the noise is (`hidden_effect`).
     """
-    count, k, width = values.shape
+    if values.ndim == 3:
+        values = values[:, :, None, :] * np.eye(values.shape[1])[:, :, None]
+    count, k, _, width = values.shape
     left_over = count * k - design.shape[1] - k * width
     bounded = left_over < SPARE
     if left_over < (0 if allowed is not None else SPARE):
         return None
     span, root = np.linalg.qr(design)
-    size = np.sqrt(np.mean(values**2, axis=0)) + 1e-300  # (k, width)
-    columns = np.einsum("Nij,Njw->Nijw", whitening, values / size)
+    size = np.sqrt(np.mean(np.sum(values**2, axis=1), axis=0)) + 1e-300  # (k, width)
+    columns = np.einsum("Nil,Nljw->Nijw", whitening, values / size)
     columns = columns.reshape(count * k, k * width)
     held = span.T @ columns
     beyond = columns - span @ held

@@ -25,7 +25,15 @@ Array = NDArray[np.float64]
 WIDER = 1.2
 """Errors of these terms, to first order, are too small by so much where an arm hangs: it then moves
 little, and its chain gives way by more than its derivatives say (measured on the 3R)."""
-KINDS = CONSTANT, SPRING, CABLE = "constant", "spring", "second harmonic"
+KINDS = CONSTANT, SPRING, CABLE, SCALE, COMPLIANCE = (
+    "constant",
+    "spring",
+    "second harmonic",
+    "angle scale",
+    "compliance",
+)
+PROBES = 400
+"""Configurations at which errors of angles are largest."""
 WIDEST = 2
 """Terms per joint of the widest kind."""
 
@@ -37,7 +45,7 @@ class TermBeside:
     Attributes
     ----------
     kind : str
-        ``constant``, ``spring`` or ``second harmonic``.
+        One of `KINDS`.
     change : (rank,) array
         Of the chain, if the torques are there, in the coordinates of ``Information.factor``.
     root : (rank, rank) array
@@ -55,7 +63,9 @@ class TermBeside:
         """How far the measured torque misses a relation of gravity through them, (n,) [N m]."""
         A, Y = relation.A, relation.Y
         unit = np.eye(len(Y))
-        if self.kind == CONSTANT:
+        if self.kind in (SCALE, COMPLIANCE):  # of angles: every torque that depends on them
+            follows = np.full(len(Y), relation.is_identity)
+        elif self.kind == CONSTANT:
             follows = Y > 0.0
         else:
             same = unit * Y[:, None] if self.kind == SPRING else unit
@@ -86,7 +96,7 @@ class BesideChain:
 
 
 def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
-    """Bound the constants, springs and cables that samples leave room for beside a chain.
+    """Bound the torques, and errors of angles, that samples leave room for beside a chain.
 
     Parameters
     ----------
@@ -114,12 +124,13 @@ def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
         SPRING: (springs(q), reach),
         CABLE: (second_harmonics(q), one),
     }
-    every = len(kinds) * samples.n
+    every = len(KINDS) * samples.n
     deviations = float(stats.norm.isf(stats.norm.sf(deviations) / every))
     stated = not np.isnan(fit.p_value)
     terms = []
-    for kind, (values, size) in kinds.items():
-        added = added_terms(
+
+    def tried(values: Array) -> AddedTerms | None:
+        return added_terms(
             rows.reshape(samples.equations, -1),
             residual.ravel(),
             fit.whitening,
@@ -127,14 +138,40 @@ def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
             floor=1.0 if stated else np.finfo(float).tiny,
             known_noise=stated,
         )
+
+    for kind, (values, size) in kinds.items():
+        added = tried(values)
         if added is not None:
             terms.append(_term(kind, added, size, deviations))
+    probes = np.random.default_rng(0).uniform(-np.pi, np.pi, (PROBES, samples.n))
+    anywhere = fit.chain.derivatives(probes, raw_directions(fit.chain.n))
+    for kind, here, there in (
+        (SCALE, q, probes),
+        (COMPLIANCE, samples.torque, anywhere.torque),
+    ):
+        added = tried((slopes.stiffness * here[:, None, :])[:, :, :, None])
+        if added is not None:
+            felt = np.abs(anywhere.stiffness * there[:, None, :]).max(axis=0)
+            terms.append(_term_of_angles(kind, added, felt, deviations))
     needed = -(-(information.rank + WIDEST * samples.n + SPARE) // samples.n)
     return BesideChain(tuple(terms), needed)
 
 
 def _term(kind: str, added: AddedTerms, reach: Array, deviations: float) -> TermBeside:
     allowed = WIDER * quantile(deviations, added.freedom)
+    largest = added.largest(allowed, reach)
+    return TermBeside(kind, added.change, _root(added, allowed), largest)
+
+
+def _term_of_angles(kind: str, added: AddedTerms, felt: Array, deviations: float) -> TermBeside:
+    """Errors of angles; ``felt`` (n, n): largest torque of a joint for one unit at another."""
+    allowed = WIDER * quantile(deviations, added.freedom)
+    sizes = added.largest(allowed, np.ones(len(felt)))
+    largest = np.linalg.norm(felt * sizes, axis=1)  # of several joints: errors are independent
+    return TermBeside(kind, added.change, _root(added, allowed), largest)
+
+
+def _root(added: AddedTerms, allowed: float) -> Array:
+    """R with ``R R^T`` the covariance that terms add, so many standard errors included."""
     values, vectors = np.linalg.eigh((added.more + added.more.T) / 2.0)
-    root = allowed * vectors * np.sqrt(np.maximum(values, 0.0))
-    return TermBeside(kind, added.change, root, added.largest(allowed, reach))
+    return np.asarray(allowed * vectors * np.sqrt(np.maximum(values, 0.0)))

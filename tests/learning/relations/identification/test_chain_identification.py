@@ -12,6 +12,7 @@ from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
+from isotorque.verify.testing.contaminated_arms import Contamination, Kind, TrueArm
 
 
 def recording(name, count, noise=0.0, seed=0):
@@ -156,6 +157,28 @@ def test_bounds_hold_for_torques_that_hide_in_the_noise(kind, size):
             claims += 1
             assert np.all(error <= entry.relation.bound + 1e-12)
     assert claims > 5
+
+
+@pytest.mark.parametrize("kind", [Kind.SCALE, Kind.COMPLIANCE])
+@pytest.mark.parametrize("name", ["2r", "3r"])
+def test_bounds_hold_for_errors_of_angles_that_hide_in_the_noise(kind, name):
+    """Angles that are read a little wrong: the torque at the angles as read keeps the bounds."""
+    arm, noise, claims = TrueArm.of(load_robot(name)), 0.02, 0
+    test = np.random.default_rng(1).uniform(-np.pi, np.pi, (300, arm.n))
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        q = rng.uniform(-np.pi, np.pi, (40, arm.n))
+        wrong = Contamination.drawn(arm, kind, q, rng, joint=int(rng.integers(arm.n)))
+        size = 3.0 * wrong.standard_error(noise)  # hardly ever named
+        measured = wrong.measured(size, noise, rng)
+        found = identify_by_chain(measured.q, measured.tau, noise=MeasurementNoise(0.0, noise))
+        truth = wrong.truth(size)
+        for entry in found.relations if found.decided else ():
+            image = wrap(entry.relation.configuration(test))
+            error = np.abs(truth(image) - entry.relation.Y * truth(test)).max(axis=0)
+            claims += not entry.relation.is_identity
+            assert np.all(error <= entry.relation.bound + 1e-12)
+    assert claims > 20
 
 
 def test_many_poses_are_thinned():

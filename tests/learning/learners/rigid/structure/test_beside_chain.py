@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.beside_chain import (
     CABLE,
+    COMPLIANCE,
     CONSTANT,
+    SCALE,
     SPRING,
     beside_chain,
 )
@@ -66,3 +68,7 @@ def test_relations_are_missed_where_they_turn_a_joint_round():
     assert terms[SPRING].missed(shifted)[0] > 0.0
     assert terms[SPRING].missed(shifted)[1] == 0.0
     assert (terms[CABLE].missed(odd) > 0.0).all()
+    unit = SymmetryRelation(np.eye(2), [0.0, 0.0], [1.0, 1.0])
+    for kind in (SCALE, COMPLIANCE):
+        assert (terms[kind].missed(odd) == 2.0 * terms[kind].largest).all()
+        assert not terms[kind].missed(unit).any()
