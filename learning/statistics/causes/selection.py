@@ -208,12 +208,26 @@ def _scored(
         log_p = float(stats.chi2.logsf(max(ratio, 0.0), df))
     else:
         left = max(null.spare - df, 1)
-        ratio = null.spare * float(np.log(max(without, 1e-300) / cost))
+        ratio = _ratio_by_joint(model, null, fit)
         log_p = float(stats.f.logsf((without - cost) / df / (cost / left), df, left))
     if not np.isfinite(log_p):
         log_p = -ratio / 2.0
     score = ratio - df * float(np.log(model.q.size))
     return Candidate(extension, fit, df, ratio, score, log_p)
+
+
+def _ratio_by_joint(model: ExtensibleModel[F], null: F, fit: F) -> float:
+    """Twice the logarithm of the likelihood ratio, every joint with the noise that is left of it.
+
+    The weights of a fit are those of the model alone: of a joint with a cause they are too small,
+    and all causes at that joint that explain most of it would seem alike.
+    """
+    m, n = model.q.shape
+    least = m * (NEGLIGIBLE * np.abs(model.torque).max() / model.noise) ** 2
+    before, after = (
+        np.maximum(np.sum(f.residual.reshape(m, n) ** 2, axis=0), least) for f in (null, fit)
+    )
+    return float(null.spare / n * np.sum(np.log(before / after)))
 
 
 def _simplest(found: Sequence[Candidate[F]]) -> tuple[Candidate[F], list[Candidate[F]]]:

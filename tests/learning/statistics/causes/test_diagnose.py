@@ -100,6 +100,17 @@ def test_rows_of_one_pose_count_once_but_from_either_side():
     assert again.noise == pytest.approx(once.noise, rel=0.05)  # not smaller by the root of five
 
 
+def test_a_spring_that_stands_out_is_no_cable():
+    """With the weights of a chain alone all causes of the joint that is badly fitted look alike."""
+    rng = np.random.default_rng(0)
+    q = rng.uniform(-2.0, 2.0, (40, 2))
+    lower = 6.1 * np.cos(q.sum(axis=1))
+    tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
+    tau = tau + 0.1 * q * [0.0, 1.0] + 0.002 * rng.normal(size=q.shape)
+    (cause,) = diagnose(q, tau).causes
+    assert cause.rivals == ((Kind.SPRING, 1),)
+
+
 def test_too_few_poses_are_told():
     q = np.random.default_rng(0).uniform(-2.0, 2.0, (5, 7))
     found = diagnose(q, np.cos(q))
