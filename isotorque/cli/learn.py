@@ -231,6 +231,8 @@ def _print_chain(document: dict[str, Any]) -> None:
     print(f"torque known to {error['rms']:.2g} N m within the ranges of the recording", end=" ")
     print(f"(standard error, RMS; at most {error['largest']:.2g})")
     _print_constant_torques(document)
+    if document.get("beside_gravity"):
+        print(f"beside gravity, part of the model: {document['beside_gravity']}")
     if "relations" in document:
         print(f"{document['relations']} symmetry relations, {document['statement']}")
     for group in document.get("gains", []):

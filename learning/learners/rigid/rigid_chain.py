@@ -320,10 +320,11 @@ class RigidChain(TorqueRegressor, SavedLearner):
         n, samples = self.fit_.model.n, self.fit_.samples
         joints = {column.joint for column in self._model.columns}
         joints |= {j for c in found.causes if c.kind is Kind.OFFSET for j in c.joints(n)}
-        again = clone(self).set_params(
-            unknown_offsets=[j in joints for j in range(n)],
-            unknown_gains=self.unknown_gains or bool(kinds & {Kind.GAIN, Kind.SIGN}),
-        )
+        again = clone(self).set_params(unknown_offsets=[j in joints for j in range(n)])
+        wrong = [cause.joint for cause in found.causes if cause.kind in (Kind.GAIN, Kind.SIGN)]
+        if wrong and not self.unknown_gains:
+            others = [None if j in wrong else 1.0 for j in range(n)]
+            again.set_params(unknown_gains=True, known_gains=None if None in wrong else others)
         near = found.selection.fit.chain
         again._fit(samples.q, samples.torque, samples.weights, near)
         if not again.verdict_.accepted:

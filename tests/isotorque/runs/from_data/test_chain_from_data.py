@@ -8,6 +8,7 @@ import pytest
 
 from isotorque.cli.main import status
 from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.learning.files.saved_models import load_model
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.export.compiled_source import build, call, needs_cc
@@ -204,6 +205,30 @@ def test_poses_to_take_are_printed(tmp_path, capsys):
     assert "known already: 21 of the 27 numbers" in said[-3]
     assert said[-2] == ",".join(f"{j}.q" for j in JOINTS)
     assert len(said[-1].split(",")) == 7
+
+
+@pytest.mark.parametrize(
+    ("cause", "said", "kind"),
+    [
+        (lambda tau: tau + 0.8 * np.eye(7)[3], "a constant torque of +0.", "offset"),
+        (lambda tau: tau * (1.0 - 2.0 * np.eye(7)[1]), "a wrong sign", "sign"),
+        (lambda tau: tau * (1.0 + 0.3 * np.eye(7)[3]), "a gain of 1.", "gain"),
+    ],
+)
+def test_constants_gains_and_signs_become_part_of_the_model(cause, said, kind, tmp_path, capsys):
+    data, out = tmp_path / "poses.csv", tmp_path / "out"
+    recording(data, 40, noise=0.05, change=lambda q, tau: (q, cause(tau)))
+    assert isotorque("learn", "--data", data, "--out", out, "--json") == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["beside_gravity"].startswith(said)
+    (found,) = document["causes"]
+    assert found["kind"] == kind
+    assert found["joint"] in JOINTS
+    model = load_model(out)
+    assert [str(c.kind) for c in model.learner.causes_] == [kind]  # kept with the model
+    q = np.random.default_rng(7).uniform(-2.0, 2.0, (200, 7))
+    truth = cause(GravityModel(load_robot("panda")).torque(q))
+    assert np.abs(model.learner.predict(q) - truth).max() < 0.3
 
 
 @pytest.mark.parametrize(
