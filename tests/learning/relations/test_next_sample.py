@@ -118,7 +118,7 @@ def test_chosen_torques_decide_what_a_short_discovery_left_open():
     assert short.learned.order == 1
     assert "more samples" in short.learned.missing
     scheme, motions = discovered(20)
-    assert len(motions) == len(before) + 20
+    assert len(before) < len(motions) <= len(before) + 20  # until the relations are known
     for motion, earlier in zip(motions, before, strict=False):
         np.testing.assert_array_equal(motion.outcome.q, earlier.outcome.q)
     chosen = motions[len(before) :]
