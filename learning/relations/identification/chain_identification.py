@@ -32,6 +32,9 @@ METHOD = "rigid chain"
 STARTS = 60
 SAME_TORQUE = 0.01
 """Torques that differ by less, relative to the largest, are the same."""
+MOST_JOINTS = 8
+"""A chain that does not fit is asked for wrong gains and signs up to so many joints: with 12 that
+takes as long as two fits, and most arms of more joints branch."""
 MOST_POSES = 500
 """A chain is fitted to no more poses, evenly taken."""
 
@@ -91,7 +94,7 @@ def identify_by_chain(
     learner = chain_of_samples(configurations, torques, noise=noise, parents=parents)
     if isinstance(learner, str):
         return nothing_learned(n, learner, METHOD)
-    if not (any_chain or learner.verdict_.accepted):
+    if not (learner.verdict_.accepted or (any_chain and n <= MOST_JOINTS)):
         return nothing_learned(n, learner.remark_, METHOD)
     return relations_of_chain(learner)
 

@@ -102,6 +102,20 @@ def test_gains_break_no_relation():
     assert found.order >= primary_symmetries(gravity.potential).order
 
 
+def test_a_chain_that_does_not_fit_is_asked_for_wrong_signs_where_that_is_wanted():
+    gravity = GravityModel(load_robot("ur5"))
+    rng = np.random.default_rng(5)
+    q = rng.uniform(-2.5, 2.5, (40, 6))
+    tau = gravity.torque(q) + 0.05 * rng.normal(size=q.shape)
+    tau[:, 1] *= -1.0
+    found = identify_by_chain(q, tau)
+    assert "a wrong sign" in found.note
+    assert found.order >= primary_symmetries(gravity.potential).order
+    refused = identify_by_chain(q, tau, any_chain=False)
+    assert refused.order == 1
+    assert refused.lack is None
+
+
 @pytest.mark.parametrize(("kind", "said"), [("spring", "(a spring)"), ("cable", "twice the angle")])
 def test_nothing_is_claimed_of_an_arm_with_springs(kind, said):
     gravity = GravityModel(load_robot("panda"))
