@@ -19,9 +19,11 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
+from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.statistics.causes.extension import Kind, Term
 from isotorque.learning.statistics.causes.selection import Choice, Selection, selected
 from isotorque.learning.statistics.poses import group_poses
+from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
@@ -182,8 +184,13 @@ def diagnose(
     >>> print(cause.kind, cause.joint, cause.size.round(2))
     offset 1 [0.3]
     """
-    configurations, torques = np.asarray(q, dtype=float), np.asarray(tau, dtype=float)
-    sides = None if directions is None else np.sign(np.asarray(directions, dtype=float))
+    configurations, torques = static_samples(q, tau)
+    sides = None
+    if directions is not None:
+        sides = np.sign(np.asarray(directions, dtype=float))
+        if sides.shape != configurations.shape or not np.isfinite(sides).all():
+            accepted = f"a sign for every angle, shape {configurations.shape}"
+            raise InputError("diagnose", "directions", f"shape {sides.shape}", accepted)
     configurations, torques, sides = _by_pose_and_side(configurations, torques, sides)
     m, n = configurations.shape
     stated = 0.0 if torque_noise is None else torque_noise

@@ -119,9 +119,43 @@ def test_too_few_poses_are_told():
     assert found.missing == "1 more poses: 5 different ones were given"
 
 
-def test_what_does_not_fit_is_refused():
-    with pytest.raises(InputError, match="torque_noise"):
-        diagnose(np.ones((9, 2)), np.ones((9, 2)), torque_noise=-1.0)
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda q, tau: ((q, tau), {"torque_noise": -1.0}), "torque_noise"),
+        (lambda q, tau: ((q, tau[:, :1]), {}), "shape"),
+        (lambda q, tau: ((q, np.where(q > 1.0, np.nan, tau)), {}), "finite"),
+        (lambda q, tau: ((q, tau), {"directions": np.ones(2)}), "directions"),
+        (lambda q, tau: ((q, tau), {"directions": np.full(q.shape, np.nan)}), "directions"),
+    ],
+)
+def test_what_does_not_fit_is_refused(change, said):
+    q = np.random.default_rng(0).uniform(-2.0, 2.0, (12, 2))
+    given, options = change(q, np.cos(q))
+    with pytest.raises(InputError, match=said):
+        diagnose(*given, **options)
+
+
+@pytest.mark.parametrize(
+    "spoil", ["joint at rest", "joint without torque", "same pose", "one joint"]
+)
+def test_samples_that_say_little_are_no_obstacle(spoil):
+    gravity = GravityModel(load_robot("2r"))
+    rng = np.random.default_rng(1)
+    q = rng.uniform(-2.0, 2.0, (30, 2))
+    if spoil == "joint at rest":
+        q[:, 1] = 0.3
+    if spoil == "same pose":
+        q[:] = q[0]
+    tau = gravity.torque(q) + NOISE * rng.normal(size=q.shape)
+    if spoil == "joint without torque":
+        tau[:, 1] = 0.0
+    if spoil == "one joint":
+        q, tau = q[:, :1], np.cos(q[:, :1]) + NOISE * rng.normal(size=(30, 1))
+    found = diagnose(q, tau)
+    assert all(np.isfinite(cause.size).all() for cause in found.causes)
+    if spoil == "same pose":
+        assert found.missing
 
 
 def test_one_seed_one_result():
