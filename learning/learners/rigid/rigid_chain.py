@@ -53,6 +53,8 @@ HELD = {Kind.OFFSET, Kind.GAIN, Kind.SIGN}
 """Causes that a chain can hold itself."""
 ROOM_FOR = {Kind.SPRING, Kind.CABLE}
 """Others that bounds of its relations leave room for."""
+STARTS_NEAR = 20
+"""Random starts, at most, where the chain is known but for what is added to it."""
 ROUNDING_SHARE = 0.1
 """Standard deviation of rounding, as a share of the largest that is called so (`EXACT`), ..."""
 MISFITS = 2.0
@@ -186,7 +188,8 @@ class RigidChain(TorqueRegressor, SavedLearner):
         if near is not None:
             gains = np.where(model.free_gains, near.gains, model.gains)
             start = replace(model.start(near.rotations), gains=gains)
-        return self._learn(self._samples(q, torque, weights), start)
+        starts = self.max_starts if near is None else min(self.max_starts, STARTS_NEAR)
+        return self._learn(self._samples(q, torque, weights), start, starts)
 
     def partial_fit(self, X: Any, y: Any, sample_weight: Any = None) -> RigidChain:
         """Learn further samples, starting from the chain found before.
@@ -421,7 +424,9 @@ class RigidChain(TorqueRegressor, SavedLearner):
             weights[used],
         )
 
-    def _learn(self, samples: ChainSamples, warm: ChainParameters | None) -> RigidChain:
+    def _learn(
+        self, samples: ChainSamples, warm: ChainParameters | None, starts: int | None = None
+    ) -> RigidChain:
         if not len(samples.q):
             raise InputError("sample_weight", "every weight", "zero", "at least one number > 0")
         fit = fit_chain(
@@ -429,7 +434,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
             self._model,
             np.random.default_rng(self.random_state),
             noise_known=self.torque_noise is not None,
-            starts=self.max_starts,
+            starts=self.max_starts if starts is None else starts,
             warm=warm,
         )
         self.gain_groups_: tuple[GainGroup, ...] = ()
