@@ -67,7 +67,7 @@ class Poses:
 
     def configurations(self, q: Array) -> Array:
         """Mean configurations (count, n) of rows q (N, n) [rad], turns of the first row kept."""
-        first = q[self._first()]
+        first = q[self.first]
         return np.asarray(first + self.means(wrap(q - first[self.label])))
 
     def spread(self, values: Array) -> tuple[Array, int]:
@@ -90,7 +90,14 @@ class Poses:
         """The poses of some of the rows (N,)."""
         return _in_order(self.label[rows])
 
-    def _first(self) -> Labels:
+    def split(self, values: Array) -> Poses:
+        """Rows of one pose that differ in values (N, k) are different ones."""
+        keys = np.column_stack([self.label, values])
+        return _in_order(np.unique(keys, axis=0, return_inverse=True)[1].ravel())
+
+    @property
+    def first(self) -> Labels:
+        """First row of every pose, (count,)."""
         return np.unique(self.label, return_index=True)[1]
 
 
@@ -196,7 +203,7 @@ def weighed_by_pose(q: Array, tau: Array, weight: Array) -> tuple[Array, Array, 
         return q, tau, weight
     total = poses.means(weight[:, None])[:, 0] * poses.rows
     share = weight * poses.rows[poses.label] / np.maximum(total, 1e-300)[poses.label]
-    first = q[poses._first()]
+    first = q[poses.first]
     moved = poses.means(share[:, None] * wrap(q - first[poses.label]))
     return first + moved, poses.means(share[:, None] * tau), total
 

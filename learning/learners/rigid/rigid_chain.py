@@ -282,7 +282,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         >>> RigidChain().fit(q, torque).symmetries().group.order
         8
         """
-        said = causes_in_words(self.diagnosis().causes)
+        said = causes_in_words(self.shown_causes())
         return chain_symmetries(
             self.fit_, self.errors_, self.snapped(), self.beside(), said, tolerance
         )
@@ -302,37 +302,51 @@ class RigidChain(TorqueRegressor, SavedLearner):
             self._diagnosis = self._diagnosed()
         return self._diagnosis
 
+    def shown_causes(self) -> tuple[Cause, ...]:
+        """Causes that the samples show beside the chain, or that make a chain of a misfit.
+
+        Returns
+        -------
+        tuple of Cause
+            Empty where there is no chain, and none with causes that is far better (`MUCH`).
+        """
+        if not self.verdict_.accepted and self.verdict_ is not FitStatus.MISFIT:
+            return ()
+        found = self.diagnosis()
+        return found.causes if self.verdict_.accepted or found.clear else ()
+
     def with_causes(self) -> RigidChain | None:
         """The same samples with the constants and gains that they show beside the chain.
 
         Returns
         -------
         RigidChain or None
-            None where nothing is shown, or a cause could be anything but a constant or a gain, or
-            no chain is accepted with them. ``causes_`` of the result are those of this one.
+            None where nothing is shown (`shown_causes`), a cause could be anything but a constant
+            or a gain, or no chain is accepted with them. ``causes_`` of the result are those of
+            this one.
         """
-        if not (self.verdict_.accepted or self.verdict_ is FitStatus.MISFIT):
-            return None
-        found = self.diagnosis()
-        kinds = {cause.kind for cause in found.causes}
-        rivals = {kind for cause in found.causes for kind, _ in cause.rivals}
+        causes = self.shown_causes()
+        kinds = {cause.kind for cause in causes}
+        rivals = {kind for cause in causes for kind, _ in cause.rivals}
         if not kinds or not kinds <= HELD or not rivals <= HELD | ROOM_FOR:
             return None
-        if found.selection is None or not (self.verdict_.accepted or found.clear):
-            return None
-        n, samples = self.fit_.model.n, self.fit_.samples
-        joints = {column.joint for column in self._model.columns}
-        joints |= {j for c in found.causes if c.kind is Kind.OFFSET for j in c.joints(n)}
-        again = clone(self).set_params(unknown_offsets=[j in joints for j in range(n)])
-        wrong = [cause.joint for cause in found.causes if cause.kind in (Kind.GAIN, Kind.SIGN)]
-        if wrong and not self.unknown_gains:
-            others = [None if j in wrong else 1.0 for j in range(n)]
-            again.set_params(unknown_gains=True, known_gains=None if None in wrong else others)
-        near = found.selection.fit.chain
-        again._fit(samples.q, samples.torque, samples.weights, near)
+        model, samples = self._model, self.fit_.samples
+        offsets, free = {column.joint for column in model.columns}, model.free_gains.copy()
+        for cause in causes:
+            if cause.kind is Kind.OFFSET:
+                offsets.update(cause.joints(model.n))
+            else:
+                free[cause.joints(model.n)] = True
+        again = clone(self).set_params(unknown_offsets=[j in offsets for j in range(model.n)])
+        if free.any():
+            known = [None if f else float(g) for f, g in zip(free, model.gains, strict=True)]
+            again.set_params(unknown_gains=True, known_gains=known)
+        selection = self.diagnosis().selection
+        assert selection is not None  # causes were selected
+        again._fit(samples.q, samples.torque, samples.weights, selection.fit.chain)
         if not again.verdict_.accepted:
             return None
-        again.causes_ = found.causes
+        again.causes_ = causes
         return again
 
     def beside(self) -> BesideChain:
@@ -399,6 +413,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
             torque_noise=self.torque_noise,
             angle_noise=self.angle_noise,
             parents=self.parents,
+            gains=fit.model.gains,
             known=[fit.chain],
             included=[*offsets, *gains],
             random_state=self.random_state,

@@ -94,9 +94,7 @@ def identify_by_chain(
     learner = chain_of_samples(configurations, torques, noise=noise, parents=parents)
     if isinstance(learner, str):
         return nothing_learned(n, learner, METHOD)
-    if not (learner.verdict_.accepted or (any_chain and n <= MOST_JOINTS)):
-        return nothing_learned(n, learner.remark_, METHOD)
-    return relations_of_chain(learner)
+    return relations_of_chain(learner, any_chain=any_chain)
 
 
 def chain_of_samples(
@@ -154,20 +152,22 @@ def _different_torques(torques: Array) -> int:
     return count
 
 
-def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
+def relations_of_chain(learner: RigidChain, *, any_chain: bool = True) -> LearnedSymmetries:
     """The relations of a chain that was fitted to samples, if they can be claimed.
 
     Parameters
     ----------
     learner : RigidChain
         Fitted, accepted or not.
+    any_chain : bool
+        As of `identify_by_chain`.
 
     Returns
     -------
     LearnedSymmetries
         As of `identify_by_chain`.
     """
-    learner, missing, lack = explained(learner)
+    learner, missing, lack = explained(learner, any_chain=any_chain)
     n, samples = learner.fit_.model.n, learner.fit_.samples
     if missing:
         return nothing_learned(n, missing, METHOD, lack=lack)
@@ -199,13 +199,17 @@ def relations_of_chain(learner: RigidChain) -> LearnedSymmetries:
     )
 
 
-def explained(learner: RigidChain) -> tuple[RigidChain, str, LackOfFit | None]:
+def explained(
+    learner: RigidChain, *, any_chain: bool = True
+) -> tuple[RigidChain, str, LackOfFit | None]:
     """A chain, with what its samples show beside it, and what stands in the way of claims.
 
     Parameters
     ----------
     learner : RigidChain
         Fitted to samples, accepted or not.
+    any_chain : bool
+        As of `identify_by_chain`.
 
     Returns
     -------
@@ -216,14 +220,13 @@ def explained(learner: RigidChain) -> tuple[RigidChain, str, LackOfFit | None]:
     lack : LackOfFit or None
         What the samples show beside gravity.
     """
-    n, verdict, lack = learner.fit_.model.n, learner.verdict_, None
-    if not (verdict.accepted or verdict is FitStatus.MISFIT):
+    n, lack = learner.fit_.model.n, None
+    if not (learner.verdict_.accepted or (any_chain and n <= MOST_JOINTS)):
         return learner, learner.remark_, None
-    diagnosis = learner.diagnosis()
-    if diagnosis.causes and (verdict.accepted or diagnosis.clear):
+    if learner.shown_causes():
         extended = learner.with_causes()
         if extended is None:
-            lack = _lack_of_fit(diagnosis, n)
+            lack = _lack_of_fit(learner.diagnosis(), n)
             return learner, f"an arm whose torque is rigid gravity: there is {lack.said}", lack
         learner, lack = extended, _constants(extended)
     if not learner.verdict_.accepted:

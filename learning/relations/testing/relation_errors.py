@@ -200,7 +200,7 @@ def _forms(q: Array, tau: Array, noise: MeasurementNoise | None) -> tuple[tuple[
     waves = _waves(q, tau, noise) if few else None
     if isinstance(waves, _Waves) and waves.examined.lack.failed:
         return (), waves.examined.obstacle + _reading(q, tau)
-    chain = _chain(q, tau, noise)
+    chain = _chain(q, tau, noise, any_chain=not isinstance(waves, _Waves))
     if not few and isinstance(chain, str):
         waves = _waves(q, tau, noise)
         if isinstance(waves, _Waves) and waves.examined.lack.failed:
@@ -234,12 +234,14 @@ def _waves(q: Array, tau: Array, noise: MeasurementNoise | None) -> _Waves | str
     return _Waves(examined)
 
 
-def _chain(q: Array, tau: Array, noise: MeasurementNoise | None) -> _Chain | str:
+def _chain(
+    q: Array, tau: Array, noise: MeasurementNoise | None, *, any_chain: bool
+) -> _Chain | str:
     """A chain, with the constants and gains that samples show beside it."""
     learner = chain_of_samples(q, tau, noise=noise)
     if isinstance(learner, str):
         return learner
-    learner, missing, _ = explained(learner)
+    learner, missing, _ = explained(learner, any_chain=any_chain)
     return missing or _Chain(learner)
 
 

@@ -132,6 +132,7 @@ def diagnose(
     torque_noise: float | Sequence[float] | None = None,
     angle_noise: float | Sequence[float] = 0.0,
     parents: Sequence[int] | None = None,
+    gains: Sequence[float] | NDArray[np.float64] | None = None,
     known: Sequence[ChainParameters] = (),
     included: Sequence[Term] = (),
     random_state: int = 0,
@@ -150,6 +151,9 @@ def diagnose(
         Standard deviation of the angle error [rad].
     parents : sequence of int, optional
         Joint that carries each joint, -1 for the base; in series by default.
+    gains : (n,) sequence of float, optional
+        Measured torques over true ones, where that is known: no causes, and the gains that are
+        found are relative to them.
     known : sequence of ChainParameters
         Chains to start from, where some were fitted before.
     included : sequence of Term
@@ -203,7 +207,7 @@ def diagnose(
     )
     family = ChainModel(
         serial(n) if parents is None else checked_parents(parents, n),
-        np.ones(n),
+        np.ones(n) if gains is None else np.array(gains, dtype=float),
         np.zeros(n, dtype=bool),
         (),
     )
@@ -243,16 +247,9 @@ def _by_pose_and_side(
         return q, tau, sides
     if sides is None:
         return poses.configurations(q), poses.means(tau), None
-    keys = np.column_stack([poses.label, sides])
-    _, first, label = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty(len(first), dtype=np.intp)
-    rank[order] = np.arange(len(first))
-    label = rank[label.ravel()]
-    count = np.bincount(label).astype(float)
-    torques = np.stack([np.bincount(label, tau[:, j]) / count for j in range(tau.shape[1])], axis=1)
-    at = poses.configurations(q)[poses.label[first[order]]]
-    return at, torques, sides[first[order]]
+    approached = poses.split(sides)
+    at = poses.configurations(q)[poses.label[approached.first]]
+    return at, approached.means(tau), sides[approached.first]
 
 
 def _cause(selection: Selection[ExtendedChain], choice: Choice) -> Cause:

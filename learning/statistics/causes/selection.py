@@ -159,19 +159,19 @@ def _best(model: ExtensibleModel[F], fit: F) -> tuple[F, list[Candidate[F]], int
     adequate = is_adequate(model, fit)
     possible = candidates(model, fit, adequate)
     taken, degrees = explained_to_first_order(fit, possible)
-    room = fit.spare - degrees >= model.q.shape[1]
-    possible_ones = [
-        (extension, int(df))
-        for extension, df, enough in zip(possible, degrees, room, strict=True)
-        if df and enough
+    room = fit.spare - model.q.shape[1]
+    seen = [
+        (extension, int(df), more)
+        for extension, df, more in zip(possible, degrees, taken, strict=True)
+        if 0 < df <= room
     ]
-    looked_at = possible_ones
+    least = -np.inf
     if adequate:
-        gain = {id(e): t for e, t in zip(possible, taken, strict=True)}
-        scale = 1.0 if model.noise_known else fit.cost / fit.spare
-        looked_at = [(e, df) for e, df in possible_ones if gain[id(e)] > WORTHWHILE * scale]
+        least = WORTHWHILE * (1.0 if model.noise_known else fit.cost / fit.spare)
     fits: list[tuple[Extension, int, F]] = []
-    for extension, df in looked_at:
+    for extension, df, more in seen:
+        if more <= least:
+            continue
         terms = _with(fit.terms, extension)
         near = [model.refitted(terms, fit)]
         if not adequate and extension.kind is Kind.GAIN and extension.joint is not None:
@@ -191,7 +191,7 @@ def _best(model: ExtensibleModel[F], fit: F) -> tuple[F, list[Candidate[F]], int
             fit = again
     scored = [_scored(model, fit, *entry) for entry in fits]
     scored.sort(key=lambda candidate: -candidate.score)
-    return fit, scored, len(possible_ones)
+    return fit, scored, len(seen)
 
 
 def _with(terms: Sequence[Term], extension: Extension) -> tuple[Term, ...]:
@@ -239,9 +239,7 @@ def _simplest(found: Sequence[Candidate[F]]) -> tuple[Candidate[F], list[Candida
 
 def _renamed(extension: Extension, fit: ExtendedFit) -> Extension:
     """A gain of -1 is a wrong sign, of the torque or of the angle."""
-    if extension.joint is None:
-        return extension
-    if extension.kind is Kind.GAIN:
+    if extension.kind is Kind.GAIN and extension.joint is not None:
         value, error = fit.estimate(extension.terms[0])
         if abs(value[0] + 1.0) < max(SAME * error[0], NEAR):
             return replace(extension, kind=Kind.SIGN)
@@ -254,19 +252,19 @@ def _without_superfluous(
     """Drop causes that are not significant beside the others."""
     while len(choices) > 1:
         tried = len(candidates(model, fit, is_adequate(model, fit)))
-        for i in range(len(choices)):
-            kept = choices[:i] + choices[i + 1 :]
+        for dropped in choices:
+            kept = [choice for choice in choices if choice is not dropped]
             terms = always
             for choice in kept:
                 terms = _with(terms, choice.extension)
-            if len(terms) == len(fit.terms):
-                break
-            without = model.refitted(terms, fit, thorough=True)
-            df = without.spare - fit.spare
-            found = _scored(model, without, choices[i].extension, max(df, 1), fit)
+            without = fit
+            if len(terms) < len(fit.terms):  # else the others contain it
+                without = model.refitted(terms, fit, thorough=True)
+            df = max(without.spare - fit.spare, 1)
+            found = _scored(model, without, dropped.extension, df, fit)
             if found.log_p + np.log(tried) >= np.log(FAMILY_WISE):
+                fit, choices = without, kept
                 break
         else:
-            return fit, choices
-        fit, choices = without if len(terms) < len(fit.terms) else fit, kept
+            break
     return fit, choices

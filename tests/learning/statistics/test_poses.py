@@ -96,3 +96,17 @@ def test_nothing_is_one_pose_or_none():
     assert group_poses([[0.1, 0.2]]).count == 1
     with pytest.raises(InputError, match="finite"):
         group_poses([[np.nan]])
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 30))
+def test_poses_are_split_where_values_differ(seed, rows):
+    rng = np.random.default_rng(seed)
+    poses = group_poses(rng.integers(0, 3, (rows, 2)).astype(float))
+    values = rng.choice([-1.0, 0.0, 1.0], (rows, 2))
+    split = poses.split(values)
+    for i in range(rows):
+        for k in range(rows):
+            alike = poses.label[i] == poses.label[k] and (values[i] == values[k]).all()
+            assert (split.label[i] == split.label[k]) == alike
+    assert split.label[split.first].tolist() == list(range(split.count))
+    assert (np.diff(split.first) > 0).all()  # numbered as they come

@@ -15,7 +15,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     raw_directions,
 )
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
-from isotorque.learning.learners.rigid.fitting.compiled_fit import levenberg_marquardt
+from isotorque.learning.learners.rigid.fitting.chain_search import minimise
 from isotorque.learning.learners.rigid.fitting.noise_estimate import (
     estimated_angle_noise,
     estimated_levels,
@@ -57,6 +57,8 @@ class ExtendedChain:
         Sum of squares of whitened torque errors.
     whitening : (m, n, n) array
         With which it was computed.
+    nominal : (n,) array
+        Gains that are no causes: those that are known.
     """
 
     samples: ChainSamples
@@ -66,6 +68,7 @@ class ExtendedChain:
     values: dict[Term, Array]
     cost: float
     whitening: Array
+    nominal: Array
 
     @cached_property
     def angles(self) -> Array:
@@ -120,7 +123,7 @@ class ExtendedChain:
         result = np.zeros(self.samples.q.shape)
         for term in terms:
             if term.shape is Shape.GAIN:
-                more = self.chain.gains[[term.place]] - 1.0
+                more = (self.chain.gains - self.nominal)[[term.place]]
             else:
                 more = self.values[term]
             result += self.columns([term]) @ more
@@ -132,7 +135,10 @@ class ExtendedChain:
         return max(self.samples.equations - self.basis.shape[1], 1)
 
     def estimate(self, term: Term) -> tuple[Array, Array]:
-        """Unknowns of one of the terms and their standard errors, as the whitening says."""
+        """Unknowns of one of the terms and their standard errors, as the whitening says.
+
+        Those of a gain are relative to the nominal one.
+        """
         first = 4 * self.chain.n
         for other in self.terms:
             width = _width(other, self.chain.n)
@@ -143,14 +149,16 @@ class ExtendedChain:
         information = Information.of_rows(self.rows, np.ones(count, dtype=bool))
         error = np.sqrt(information.variance(np.eye(count)[first : first + width]))
         if term.shape is Shape.GAIN:
-            return self.chain.gains[[term.place]], error
+            nominal = self.nominal[[term.place]]
+            return self.chain.gains[[term.place]] / nominal, error / np.abs(nominal)
         return self.values[term], error
 
     def plausible(self) -> bool:
         """Whether all causes are as small as causes are."""
         size = np.sqrt(np.mean(self.samples.torque**2, axis=0))
+        gains = np.abs(self.chain.gains / self.nominal)
         for term in self.terms:
-            gain = abs(self.chain.gains[term.place]) if term.shape is Shape.GAIN else 1.0
+            gain = gains[term.place] if term.shape is Shape.GAIN else 1.0
             if not 1.0 / LARGEST_GAIN < gain < LARGEST_GAIN:  # 0: a sensor that does not read
                 return False
             if term.shape is Shape.SCALE and abs(self.values[term][0]) > LARGEST_SCALE:
@@ -184,6 +192,7 @@ def fit_extended(
     start: ChainParameters,
     whitening: Array,
     *,
+    nominal: Array,
     near: ExtendedChain | None = None,
     iterations: int,
     progress: float,
@@ -202,10 +211,12 @@ def fit_extended(
         Rotations and gains to start from.
     whitening : (m, n, n) array
         Of the torque errors.
+    nominal : (n,) array
+        Gains that are no causes.
     near : ExtendedChain, optional
         Causes to start from.
     iterations, progress
-        As of `levenberg_marquardt`.
+        As of `minimise`.
 
     Notes
     -----
@@ -228,35 +239,29 @@ def fit_extended(
         slopes = chain.derivatives(angles, raw_directions(n)) if curved and known else None
         used = linear + (curved if slopes is not None else [])
         extra = _columns(used, samples, directions, slopes, chain.gains)
-        rotations, levers, gains, found, new, _ = levenberg_marquardt(
-            chain.parents,
-            chain.rotations,
-            chain.gains,
-            angles,
-            samples.torque,
-            whitening,
-            extra,
-            np.ones(2 * n, dtype=bool),
-            np.ones(2 * n, dtype=bool),
+        found = minimise(
+            replace(samples, q=angles),
+            chain,
             free,
-            False,
-            iterations,
-            progress,
-            0.0,
+            whitening,
+            extra=extra,
+            iterations=iterations,
+            progress=progress,
+            enough=0.0,
         )
-        chain = replace(chain, rotations=rotations, levers=levers, gains=gains)
         first = 0
         for term in used:
             width = _width(term, n)
-            step = found[first : first + width]
+            step = found.chain.coefficients[first : first + width]
             again = term.shape in (Shape.SCALE, Shape.COMPLIANCE)
             values[term] = values[term] + step if again else step
             first += width
-        settled = abs(cost - new) <= SETTLED * new
-        cost, known = float(new), True
+        chain = replace(found.chain, coefficients=np.zeros(0))
+        settled = abs(cost - found.cost) <= SETTLED * found.cost
+        cost, known = found.cost, True
         if settled or not np.isfinite(cost):
             break
-    return ExtendedChain(samples, directions, terms, chain, values, cost, whitening)
+    return ExtendedChain(samples, directions, terms, chain, values, cost, whitening, nominal)
 
 
 def _width(term: Term, joints: int) -> int:

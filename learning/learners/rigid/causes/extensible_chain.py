@@ -53,7 +53,7 @@ class ExtensibleChain:
     samples : ChainSamples
         With noise levels, stated or estimated.
     family : ChainModel
-        Parents of the joints.
+        Parents of the joints and gains that are no causes.
     directions : (m, n) array or None
         Signs of the last motion of every joint.
     noise_known, angles_known : bool
@@ -107,7 +107,7 @@ class ExtensibleChain:
         spare = max(part.samples.equations - 4 * self.family.n + 1, 1)
         accepted = stats.chi2.isf(ACCEPTED, spare)
         for i in range(len(known) + starts):
-            start = known[i] if i < len(known) else self._random_start()
+            start = known[i] if i < len(known) else self.family.random_start(self.rng)
             found = part._from(start, terms)
             if np.isfinite(found.cost) and (best is None or found.cost < best.cost):
                 best = found
@@ -121,8 +121,9 @@ class ExtensibleChain:
         self, terms: Sequence[Term], near: ExtendedChain, *, thorough: bool = False
     ) -> ExtendedChain:
         """The minimum with these terms that lies near another."""
-        free = {term.place for term in terms if term.shape is Shape.GAIN}
-        gains = np.array([g if j in free else 1.0 for j, g in enumerate(near.chain.gains)])
+        free = [term.place for term in terms if term.shape is Shape.GAIN]
+        gains = self.family.gains.copy()
+        gains[free] = near.chain.gains[free]
         start = replace(near.chain, gains=gains)
         whitening = self.samples.whitening(near.chain if self.samples.angle_noise.any() else None)
         return self._fitted(terms, start, whitening, near, THOROUGH if thorough else QUICK)
@@ -130,15 +131,15 @@ class ExtensibleChain:
     def others(
         self, extension: Extension, terms: Sequence[Term], count: int
     ) -> list[ExtendedChain]:
-        """The best minimum of some random rotations; half of those of a gain begin with -1."""
+        """The best minimum of random starts; half of those of a gain change its sign."""
         if any(term.shape is Shape.LOAD for term in terms):
             return []  # it counts samples, and parts of them have other numbers
         part = self._thinned()
         found = []
         for i in range(count):
-            start = self._random_start()
+            start = self.family.random_start(self.rng)
             if extension.kind is Kind.GAIN and extension.joint is not None and i % 2 == 0:
-                start.gains[extension.joint] = -1.0
+                start.gains[extension.joint] *= -1.0
             found.append(part._from(start, terms))
         finite = [fit for fit in found if np.isfinite(fit.cost) and fit.plausible()]
         if not finite:
@@ -174,14 +175,6 @@ class ExtensibleChain:
                 found = self.refitted(terms, found)
         return found
 
-    def _random_start(self) -> ChainParameters:
-        return replace(
-            self.family.random_start(self.rng),
-            gains=np.ones(self.family.n),
-            columns=(),
-            coefficients=np.zeros(0),
-        )
-
     def _fitted(
         self,
         terms: Sequence[Term],
@@ -196,6 +189,7 @@ class ExtensibleChain:
             terms,
             start,
             whitening,
+            nominal=self.family.gains,
             near=near,
             iterations=effort[0],
             progress=effort[1],

@@ -124,13 +124,15 @@ def minimise(
     whitening: Array,
     *,
     constraint: Constraint | None = None,
+    extra: Array | None = None,
     iterations: int = ITERATIONS,
     progress: float = PROGRESS,
     enough: float | None = None,
 ) -> SearchedChain:
     """Go from a start to a minimum with a given whitening.
 
-    It ends at a cost below ``enough``; by default where polishing takes over.
+    ``extra`` holds columns (m, n, c) in place of those of the start: the coefficients found are
+    theirs. It ends at a cost below ``enough``; by default where polishing takes over.
     """
     n = start.n
     everything = np.ones(2 * n, dtype=bool)
@@ -142,7 +144,7 @@ def minimise(
         samples.q,
         samples.torque,
         whitening,
-        features(start.columns, samples.q),
+        features(start.columns, samples.q) if extra is None else extra,
         everything if constraint is None else constraint.turns,
         everything if constraint is None else constraint.levers,
         free_gains,

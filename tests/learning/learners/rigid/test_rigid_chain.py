@@ -13,6 +13,7 @@ from sklearn.base import clone
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus, NotAccepted
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.learning.statistics.causes.extension import Kind
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
@@ -129,6 +130,57 @@ def test_gains_are_known_relative_to_each_other():
     assert any(g.scale_known for g in fixed.gain_groups_)
     true = fixed.chain_.true_chain().torque(q)
     np.testing.assert_allclose(true[:, 1:], gravity.torque(q)[:, 1:], atol=1e-7)
+
+
+def currents(gains, seed=3):
+    """Torques of ur5 in units of its own at every joint, noise in proportion."""
+    _, q, torque = measured("ur5", 40, seed, 0.05)
+    return q, torque * gains
+
+
+def test_gains_that_are_known_are_no_causes():
+    gains = np.array([1.0, 40.0, -30.0, 1.0, 1.0, 1.0])
+    q, torque = currents(gains)
+    known = RigidChain(unknown_gains=True, known_gains=list(gains)).fit(q, torque)
+    assert known.verdict_.accepted
+    assert known.diagnosis().causes == ()
+    assert known.symmetries().group.order > 1
+
+
+def test_a_gain_other_than_the_known_one_is_named_relative_to_it():
+    gains = np.array([1.0, 40.0, 20.0, 1.0, 1.0, 1.0])
+    q, torque = currents(gains * [1.0, 1.0, 1.2, 1.0, 1.0, 1.0])
+    noise = [0.05 * abs(g) for g in gains]
+    wrong = RigidChain(unknown_gains=True, known_gains=list(gains), torque_noise=noise)
+    wrong.fit(q, torque)
+    assert wrong.verdict_ is FitStatus.MISFIT
+    (cause,) = wrong.shown_causes()
+    assert (Kind.GAIN, 2) in cause.rivals  # of two coupled joints only the ratio is known
+    ratio = cause.size[0] if cause.joint == 2 else 1.0 / cause.size[0]
+    assert ratio == pytest.approx(1.2, rel=0.01)
+    mended = wrong.with_causes()
+    assert mended.verdict_.accepted
+    assert mended.causes_ == (cause,)
+    kept = 1 if cause.joint == 2 else 2
+    assert mended.chain_.gains[kept] == gains[kept]
+    found = mended.chain_.gains[2] / mended.chain_.gains[1]
+    assert found == pytest.approx(0.6, rel=0.01)
+
+
+def test_causes_of_an_arm_that_is_no_chain_are_not_shown():
+    """It comes nearer to a chain with any cause: that makes none of it."""
+    _, q, torque = measured("2r", 60, 5)
+    rest = np.sin(3.0 * q[:, :1] - q[:, 1:]) * [1.0, 0.4]
+    rough = RigidChain(torque_noise=0.01).fit(q, torque + rest)
+    assert rough.verdict_ is FitStatus.MISFIT
+    assert rough.diagnosis().causes
+    assert rough.shown_causes() == ()
+    assert rough.with_causes() is None
+
+
+def test_of_too_few_samples_no_causes_are_shown():
+    _, q, torque = measured("panda", 3, 0)
+    assert RigidChain(max_starts=10).fit(q, torque).shown_causes() == ()
 
 
 def test_a_sign_is_a_gain():

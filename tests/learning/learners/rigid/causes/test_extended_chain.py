@@ -62,7 +62,14 @@ def test_every_cause_is_found_with_its_size(seed, shape, joint):
     load = 0.2 * rng.normal(size=(JOINTS, 2))
     samples = measured(exact_samples(rng, chain), term, size, directions, chain, load)
     found = fit_extended(
-        samples, directions, [term], chain, samples.whitening(), iterations=150, progress=1e-12
+        samples,
+        directions,
+        [term],
+        chain,
+        samples.whitening(),
+        nominal=chain.gains,
+        iterations=150,
+        progress=1e-12,
     )
     assert np.abs(found.rest).max() < 1e-5 * samples.largest_torque
     if shape is Shape.LOAD:
@@ -87,7 +94,7 @@ def test_columns_are_derivatives(seed, shape, joint):
     samples = exact_samples(rng, chain)
     place = POSES // 2 if shape is Shape.LOAD else joint
     term = Term(shape, place)
-    fit = ExtendedChain(samples, directions, (), chain, {}, 0.0, samples.whitening())
+    fit = ExtendedChain(samples, directions, (), chain, {}, 0.0, samples.whitening(), chain.gains)
     columns = fit.columns([term])
     step = 1e-6
     if shape is Shape.LOAD:
@@ -121,21 +128,42 @@ def test_causes_beyond_what_causes_are_are_not_plausible():
     ]:
         term = Term(shape, 1)
         values = {term: np.array([size])}
-        fit = ExtendedChain(samples, None, (term,), chain, values, 1.0, samples.whitening())
+        fit = ExtendedChain(
+            samples, None, (term,), chain, values, 1.0, samples.whitening(), chain.gains
+        )
         assert fit.plausible() is good
 
 
 @pytest.mark.parametrize(
     ("gain", "good"), [(0.2, True), (-5.0, True), (0.05, False), (20.0, False)]
 )
-def test_a_sensor_that_does_not_read_has_no_gain(gain, good):
+@pytest.mark.parametrize("nominal", [1.0, -40.0])
+def test_a_sensor_that_does_not_read_has_no_gain(gain, good, nominal):
     rng = np.random.default_rng(0)
     chain = random_chain(rng, JOINTS, "random")
+    chain = replace(chain, gains=np.array([1.0, nominal, 1.0]))
     samples = exact_samples(rng, chain)
     term = Term(Shape.GAIN, 1)
-    moved = replace(chain, gains=np.array([1.0, gain, 1.0]))
-    fit = ExtendedChain(samples, None, (term,), moved, {}, 1.0, samples.whitening())
+    moved = replace(chain, gains=chain.gains * [1.0, gain, 1.0])
+    fit = ExtendedChain(samples, None, (term,), moved, {}, 1.0, samples.whitening(), chain.gains)
     assert fit.plausible() is good
+
+
+def test_gains_are_told_beside_those_that_are_known():
+    rng = np.random.default_rng(0)
+    chain = random_chain(rng, JOINTS, "random")
+    chain = replace(chain, gains=np.array([1.0, -40.0, 2.0]))
+    samples = exact_samples(rng, chain)
+    term = Term(Shape.GAIN, 1)
+    moved = replace(chain, gains=chain.gains * [1.0, 1.1, 1.0])
+    measured = replace(samples, torque=moved.torque(samples.q))
+    fit = ExtendedChain(measured, None, (term,), moved, {}, 0.0, samples.whitening(), chain.gains)
+    value, error = fit.estimate(term)
+    assert value[0] == pytest.approx(1.1)
+    plain = ExtendedChain(measured, None, (term,), moved, {}, 0.0, samples.whitening(), np.ones(3))
+    assert error[0] == pytest.approx(plain.estimate(term)[1][0] / 40.0)
+    np.testing.assert_allclose(fit.effect([term])[:, 1], samples.torque[:, 1] * 0.1)
+    assert not fit.effect([term])[:, [0, 2]].any()
 
 
 def test_noise_is_estimated_for_every_joint():
@@ -146,7 +174,16 @@ def test_noise_is_estimated_for_every_joint():
     tau = chain.torque(q) + levels * rng.normal(size=q.shape)
     zero = np.zeros(JOINTS)
     samples = ChainSamples(q, tau, zero, zero, np.ones(400))
-    fit = fit_extended(samples, None, [], chain, samples.whitening(), iterations=100, progress=1e-8)
+    fit = fit_extended(
+        samples,
+        None,
+        [],
+        chain,
+        samples.whitening(),
+        nominal=chain.gains,
+        iterations=100,
+        progress=1e-8,
+    )
     found = fit.with_estimated_noise(True).torque_noise
     # all joints count alike in this fit, so the noise of one spoils the torque of the others
     np.testing.assert_allclose(found, levels, rtol=0.3)
