@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.claims.data_sets import DataSet
-from isotorque.learning.statistics.causes.diagnose import diagnose
+from isotorque.learning.learners.rigid.causes.diagnose import diagnose
 from isotorque.verify.testing.contaminated_arms import Contamination, Kind
 
 Name = tuple[str, int | None]

@@ -12,7 +12,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
     Undetermined,
 )
 from isotorque.learning.relations.potential.inactive_joints import fit_on_active_joints
-from isotorque.learning.relations.potential.potential_fit import FittedPotential, quantile
+from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.learning.relations.potential.samples_needed import samples_needed
 from isotorque.learning.statistics.lack_of_fit import (
     KINDS,
@@ -21,6 +21,7 @@ from isotorque.learning.statistics.lack_of_fit import (
     samples_for_alternatives,
 )
 from isotorque.learning.statistics.poses import by_pose
+from isotorque.learning.statistics.tails import quantile
 
 Array = NDArray[np.float64]
 

@@ -36,7 +36,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
     Undetermined,
 )
-from isotorque.learning.relations.static_samples import static_samples
+from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.groups.group_arrays import CandidateGroup, completed
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 

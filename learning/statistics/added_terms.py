@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.relations.potential.potential_fit import tail_probability
 from isotorque.learning.statistics.hidden_effect import hidden_effect
+from isotorque.learning.statistics.tails import tail_probability
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.relations.potential.potential_fit import tail_probability
+from isotorque.learning.statistics.tails import tail_probability
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
+from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.learning.statistics.added_terms import (
     added_terms,
     in_words,
@@ -21,6 +21,7 @@ from isotorque.learning.statistics.added_terms import (
 )
 from isotorque.learning.statistics.constant_torques import constants_in_words
 from isotorque.learning.statistics.poses import Poses
+from isotorque.learning.statistics.tails import tail_probability
 
 Array = NDArray[np.float64]
 

@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.relations.potential.errors_in_variables import torque_features
-from isotorque.learning.relations.potential.potential_fit import (
-    Frequencies,
-    tail_probability,
-)
+from isotorque.learning.relations.potential.potential_fit import Frequencies
+from isotorque.learning.statistics.tails import tail_probability
 
 Array = NDArray[np.float64]
 

@@ -140,23 +140,20 @@ STATISTICS = (
         "blurred offsets agree with anything",
     ),
     Mutation(
-        "learning/relations/potential/potential_fit.py",
+        "learning/statistics/tails.py",
         "return float(stats.t.isf(stats.norm.sf(deviations), freedom))",
         "return deviations",
         (
-            "tests/learning/relations/potential/test_potential_fit.py"
+            "tests/learning/statistics/test_tails.py"
             "::test_quantiles_are_exceeded_as_rarely_as_those_of_a_normal_variable",
         ),
         "few degrees of freedom know the noise badly (Student)",
     ),
     Mutation(
-        "learning/relations/potential/potential_fit.py",
+        "learning/statistics/tails.py",
         "return float(stats.f.sf(statistic / degrees, degrees, freedom))",
         "return float(stats.chi2.sf(statistic, degrees))",
-        (
-            "tests/learning/relations/identification/test_group_fit.py"
-            "::test_tail_probability_knows_its_limits",
-        ),
+        ("tests/learning/statistics/test_tails.py::test_tail_probability_knows_its_limits",),
         "few degrees of freedom know the noise badly (F)",
     ),
     Mutation(

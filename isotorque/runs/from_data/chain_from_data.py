@@ -21,8 +21,8 @@ from isotorque.learning.learners.rigid.misread_samples import other_reading
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import ChainSymmetries
+from isotorque.learning.statistics.causes.cause import Cause
 from isotorque.learning.statistics.causes.cause_words import causes_in_words
-from isotorque.learning.statistics.causes.diagnose import Cause
 from isotorque.learning.statistics.poses import group_poses
 from isotorque.runs.from_data.poses_to_take import poses_to_take
 from isotorque.runs.stages import DATABASE

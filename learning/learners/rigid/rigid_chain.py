@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sklearn.base import clone
 
 from isotorque.learning.learners.base import SavedLearner
+from isotorque.learning.learners.rigid.causes.diagnose import Diagnosis, diagnose
 from isotorque.learning.learners.rigid.fitting.acceptance import EXACT, fit_chain
 from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit, fit_at
 from isotorque.learning.learners.rigid.fitting.chain_parameters import (
@@ -42,8 +43,8 @@ from isotorque.learning.learners.sample_checks import (
     require_fitted,
 )
 from isotorque.learning.learners.torque_score import TorqueRegressor
+from isotorque.learning.statistics.causes.cause import Cause
 from isotorque.learning.statistics.causes.cause_words import causes_in_words
-from isotorque.learning.statistics.causes.diagnose import Cause, Diagnosis, diagnose
 from isotorque.learning.statistics.causes.extension import Kind, Shape, Term
 from isotorque.symbolic.common.errors import InputError
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from isotorque.learning.learners.rigid.causes.diagnose import Diagnosis
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.planning.poses_needed import fewest_poses
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
@@ -19,11 +20,10 @@ from isotorque.learning.relations.learned_symmetries import (
     nothing_learned,
 )
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
-from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.statistics.causes.cause_words import causes_in_words
-from isotorque.learning.statistics.causes.diagnose import Diagnosis
 from isotorque.learning.statistics.lack_of_fit import LackOfFit
 from isotorque.learning.statistics.poses import by_pose
+from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 
 Array = NDArray[np.float64]

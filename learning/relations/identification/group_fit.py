@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
+from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.learning.relations.potential.pull_backs import PullBacks
+from isotorque.learning.statistics.tails import tail_probability
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import CandidateGroup, Ints
 

@@ -16,7 +16,7 @@ from isotorque.learning.relations.identification.wave_identification import (
 )
 from isotorque.learning.relations.learned_symmetries import LearnedSymmetries
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
-from isotorque.learning.relations.static_samples import static_samples
+from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import SAME_ESTIMATED_OFFSET, CandidateGroup
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup

@@ -34,11 +34,11 @@ from isotorque.learning.relations.potential.errors_in_variables import (
 from isotorque.learning.relations.potential.potential_fit import (
     FittedPotential,
     present_frequencies,
-    quantile,
 )
-from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.statistics.misfit_advice import misfit_advice
 from isotorque.learning.statistics.poses import by_pose
+from isotorque.learning.statistics.static_samples import static_samples
+from isotorque.learning.statistics.tails import quantile
 from isotorque.learning.statistics.torque_scales import torque_scales
 from isotorque.symbolic.groups.group_arrays import lifted_relations
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup

@@ -11,7 +11,7 @@ from isotorque.learning.relations.pairing.free_regression import regress_relatio
 from isotorque.learning.relations.pairing.hough_transform import Tolerance
 from isotorque.learning.relations.pairing.orbit_refinement import Refinement
 from isotorque.learning.relations.pairing.torque_pairs import Pairs
-from isotorque.learning.relations.potential.potential_fit import tail_probability
+from isotorque.learning.statistics.tails import tail_probability
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import SAME_ESTIMATED_OFFSET, CandidateGroup
 

@@ -19,7 +19,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
     Undetermined,
 )
-from isotorque.learning.relations.static_samples import static_samples
+from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.groups.group_arrays import CandidateGroup, lifted_relations
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import identity

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
 
 from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
@@ -18,6 +17,7 @@ from isotorque.learning.relations.potential.errors_in_variables import (
     torque_features,
     weighted_fit,
 )
+from isotorque.learning.statistics.tails import tail_probability
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 
 Array = NDArray[np.float64]
@@ -328,25 +328,6 @@ def present_frequencies(fit: FittedPotential, level: float) -> NDArray[np.bool_]
         block = covariance[np.ix_([i, m + i], [i, m + i])]
         p_values[i] = tail_probability(float(pair @ np.linalg.solve(block, pair)), 2, fit.freedom)
     return p_values < level / m
-
-
-def quantile(deviations: float, freedom: float) -> float:
-    """Standard errors that are exceeded as rarely as `deviations` by a normal variable.
-
-    More if the noise was estimated with few degrees of freedom (Student's t).
-    """
-    if np.isinf(freedom):
-        return deviations
-    return float(stats.t.isf(stats.norm.sf(deviations), freedom))
-
-
-def tail_probability(statistic: float, degrees: int, freedom: float) -> float:
-    """P(misfit >= statistic): chi-square with `degrees`, or F where the noise was estimated."""
-    if degrees <= 0:
-        return 1.0
-    if np.isinf(freedom):
-        return float(stats.chi2.sf(statistic, degrees))
-    return float(stats.f.sf(statistic / degrees, degrees, freedom))
 
 
 def _different(q: Array, tau: Array) -> tuple[Array, Array]:

@@ -17,10 +17,11 @@ from isotorque.learning.relations.potential.errors_in_variables import (
     Undetermined,
 )
 from isotorque.learning.relations.potential.inactive_joints import NEVER_MOVED
-from isotorque.learning.relations.potential.potential_fit import FittedPotential, tail_probability
+from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.learning.relations.potential.pull_backs import PullBacks
 from isotorque.learning.relations.potential.samples_needed import samples_needed
-from isotorque.learning.relations.static_samples import static_samples
+from isotorque.learning.statistics.static_samples import static_samples
+from isotorque.learning.statistics.tails import tail_probability
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.group_arrays import CandidateGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation

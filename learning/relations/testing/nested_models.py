@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
-from isotorque.learning.relations.potential.potential_fit import ROUNDING, tail_probability
+from isotorque.learning.relations.potential.potential_fit import ROUNDING
 from isotorque.learning.relations.testing.basis_functions import Functions
+from isotorque.learning.statistics.tails import tail_probability
 
 Array = NDArray[np.float64]
 RATIOS = np.geomspace(0.01, 30.0, 8)  # torque noise over angle noise times slope

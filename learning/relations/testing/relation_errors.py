@@ -35,9 +35,9 @@ from isotorque.learning.relations.potential.errors_in_variables import (
 )
 from isotorque.learning.relations.potential.inactive_joints import NEVER_MOVED
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
-from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.statistics.misfit_advice import misfit_advice
 from isotorque.learning.statistics.poses import by_pose
+from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.group_arrays import CandidateGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
-from isotorque.learning.relations.static_samples import static_samples
 from isotorque.learning.relations.testing.judge_candidates import Judgement
 from isotorque.learning.relations.testing.subgroup_test import GroupTrial, over_joints
 from isotorque.learning.statistics.poses import by_pose
+from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.subgroups import generated, largest_subgroups
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from isotorque.learning.statistics.causes.cause import Cause
 from isotorque.learning.statistics.causes.extension import Kind
 from isotorque.learning.statistics.constant_torques import OR_FRICTION
-
-if TYPE_CHECKING:
-    from isotorque.learning.statistics.causes.diagnose import Cause
 
 NAMES = {
     Kind.OFFSET: "a constant torque",
@@ -43,7 +40,6 @@ def causes_in_words(causes: Sequence[Cause]) -> str:
 
     Examples
     --------
-    >>> from isotorque.learning.statistics.causes.diagnose import Cause
     >>> size, error = np.array([0.304]), np.array([0.0031])
     >>> print(causes_in_words([Cause(Kind.OFFSET, 1, size, error, 1e-9, 0.304, ())]))
     a constant torque of +0.304 N m on joint 2 (standard error 0.003), or friction approached from

@@ -10,7 +10,6 @@ from scipy import stats
 
 from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
 from isotorque.learning.learners.rigid.fitting.chain_parameters import raw_directions
-from isotorque.learning.relations.potential.potential_fit import quantile
 from isotorque.learning.statistics.added_terms import (
     SPARE,
     AddedTerms,
@@ -18,6 +17,7 @@ from isotorque.learning.statistics.added_terms import (
     second_harmonics,
     springs,
 )
+from isotorque.learning.statistics.tails import quantile
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]

@@ -4,11 +4,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from isotorque.learning.relations.identification.group_fit import fit_group, torque_uncertainty
-from isotorque.learning.relations.potential.potential_fit import (
-    all_frequencies,
-    fit_potential,
-    tail_probability,
-)
+from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import CandidateGroup, lifted_relations
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
@@ -100,12 +96,6 @@ def test_bounds_hold_for_the_true_torque_error():
             broken += (error > limit + 1e-12).any()
             assert (typical <= limit + 1e-12).all()
     assert broken == 0
-
-
-def test_tail_probability_knows_its_limits():
-    assert tail_probability(5.0, 0, np.inf) == 1.0
-    assert np.isclose(tail_probability(3.84, 1, np.inf), 0.05, atol=1e-3)
-    assert tail_probability(3.84, 1, 3.0) > 0.1  # three degrees of freedom know the noise badly
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3))

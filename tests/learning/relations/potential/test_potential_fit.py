@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
@@ -12,7 +11,6 @@ from isotorque.learning.relations.potential.potential_fit import (
     all_frequencies,
     fit_potential,
     present_frequencies,
-    quantile,
 )
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
@@ -134,11 +132,3 @@ def test_samples_on_a_line_leave_coefficients_open():
 def test_noise_levels_must_be_numbers(level):
     with pytest.raises(InputError, match="angle"):
         MeasurementNoise(level, 0.0)
-
-
-@given(st.floats(0.5, 4.0), st.floats(1.0, 200.0))
-def test_quantiles_are_exceeded_as_rarely_as_those_of_a_normal_variable(deviations, freedom):
-    wide = quantile(deviations, freedom)
-    assert stats.t.sf(wide, freedom) == pytest.approx(stats.norm.sf(deviations), rel=1e-6)
-    assert wide > deviations
-    assert quantile(deviations, np.inf) == deviations

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from isotorque.learning.statistics.causes.diagnose import diagnose
+from isotorque.learning.learners.rigid.causes.diagnose import diagnose
 from isotorque.learning.statistics.causes.extension import Kind
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.gravity.gravity_model import GravityModel

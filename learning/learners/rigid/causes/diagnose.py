@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,10 +18,11 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
-from isotorque.learning.relations.static_samples import static_samples
-from isotorque.learning.statistics.causes.extension import Kind, Term
-from isotorque.learning.statistics.causes.selection import Choice, Selection, selected
+from isotorque.learning.statistics.causes.cause import Cause, causes_of
+from isotorque.learning.statistics.causes.extension import Term
+from isotorque.learning.statistics.causes.selection import Selection, selected
 from isotorque.learning.statistics.poses import group_poses
+from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.single_thread import single_thread
 
@@ -35,64 +35,6 @@ SPARE_POSES = 2
 MUCH = 5.0
 """Times that causes must lower what a chain leaves of the joint it explains worst, to make a chain
 of samples that are none as they stand: an arm that is no chain comes nearer with any cause."""
-
-
-@dataclass(frozen=True, eq=False)
-class Cause:
-    """A cause of torques beside gravity.
-
-    Attributes
-    ----------
-    kind : Kind
-    joint : int or None
-        From 0; None for all joints and for a payload.
-    size, standard_error : (k,) arrays
-        Of all its unknowns, in the units of the kind.
-    p_value : float
-        Chance that anything as clear is seen where there is nothing.
-    effect : float
-        Torque that it adds, RMS over the samples, at the joint where that is largest [N m].
-    rivals : tuple of (Kind, int or None)
-        Causes that cannot be told apart with these samples, this one first.
-    """
-
-    kind: Kind
-    joint: int | None
-    size: Array
-    standard_error: Array
-    p_value: float
-    effect: float
-    rivals: tuple[tuple[Kind, int | None], ...]
-
-    def as_json(self) -> dict[str, Any]:
-        """Everything as plain numbers and names; joints from 0."""
-        return {
-            "kind": str(self.kind),
-            "joint": self.joint,
-            "size": self.size.tolist(),
-            "standard_error": [x if np.isfinite(x) else None for x in self.standard_error],
-            "p_value": self.p_value,
-            "effect": self.effect,
-            "rivals": [[str(kind), joint] for kind, joint in self.rivals],
-        }
-
-    @classmethod
-    def from_json(cls, found: Mapping[str, Any]) -> Cause:
-        """Inverse of `as_json`."""
-        error = [np.inf if x is None else x for x in found["standard_error"]]
-        return cls(
-            Kind(found["kind"]),
-            found["joint"],
-            np.array(found["size"], dtype=float),
-            np.array(error, dtype=float),
-            float(found["p_value"]),
-            float(found["effect"]),
-            tuple((Kind(kind), joint) for kind, joint in found["rivals"]),
-        )
-
-    def joints(self, count: int) -> list[int]:
-        """Joints (from 0) of an arm of so many that it concerns."""
-        return list(range(count)) if self.joint is None else [self.joint]
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +172,7 @@ def diagnose(
     if not model.noise_known:
         alone = model.alone([alone.chain], included, AGAIN)
     selection = selected(model, alone)
-    causes = tuple(_cause(selection, choice) for choice in selection.choices)
+    causes = causes_of(selection)
     left = np.sqrt(np.mean(selection.fit.rest**2, axis=0))
     joint = int(np.argmax(np.sqrt(np.mean(alone.rest**2, axis=0))))
     before = float(np.sqrt(np.mean(alone.rest[:, joint] ** 2)))
@@ -250,15 +192,3 @@ def _by_pose_and_side(
     approached = poses.split(sides)
     at = poses.configurations(q)[poses.label[approached.first]]
     return at, approached.means(tau), sides[approached.first]
-
-
-def _cause(selection: Selection[ExtendedChain], choice: Choice) -> Cause:
-    extension = choice.extension
-    fit = selection.fit
-    estimates = [fit.estimate(term) for term in extension.terms if term in fit.terms]
-    size = np.concatenate([value for value, _ in estimates])
-    error = np.concatenate([error for _, error in estimates])
-    added = fit.effect([term for term in extension.terms if term in fit.terms])
-    effect = float(np.sqrt(np.mean(added**2, axis=0)).max())
-    rivals = tuple((rival.kind, rival.joint) for rival in choice.rivals)
-    return Cause(extension.kind, extension.joint, size, error, choice.p_value, effect, rivals)
