@@ -145,8 +145,8 @@ MUTATIONS = (
     ),
     Mutation(
         "learning/relations/identification/chain_identification.py",
-        "if diagnosis.causes and",
-        "if False and",
+        "if learner.shown_causes():",
+        "if False:",
         ("tests/learning/relations/identification/test_chain_identification.py",),
         "a constant that passes for noise makes relations false",
     ),
