@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.statistics.causes.extensible_model import ExtendedFit, ExtensibleModel, F
+from isotorque.learning.statistics.causes.extended_fit import ExtendedFit
+from isotorque.learning.statistics.causes.extensible_model import ExtensibleModel, F
 from isotorque.learning.statistics.causes.extension import Extension, Kind, Shape
 
 Array = NDArray[np.float64]

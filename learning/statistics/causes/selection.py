@@ -10,7 +10,8 @@ import numpy as np
 from scipy import stats
 
 from isotorque.learning.statistics.causes.candidates import candidates, explained_to_first_order
-from isotorque.learning.statistics.causes.extensible_model import ExtendedFit, ExtensibleModel, F
+from isotorque.learning.statistics.causes.extended_fit import ExtendedFit
+from isotorque.learning.statistics.causes.extensible_model import ExtensibleModel, F
 from isotorque.learning.statistics.causes.extension import Extension, Kind, Term
 
 FAMILY_WISE, LATER = 0.01, 0.001

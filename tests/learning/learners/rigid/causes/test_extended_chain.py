@@ -24,6 +24,12 @@ def exact_samples(rng, chain):
     return ChainSamples(q, tau, zero, zero, np.ones(POSES))
 
 
+def fit_of(samples, chain, terms=(), values=None, *, directions=None, nominal=None):
+    nominal = chain.gains if nominal is None else nominal
+    whitening = samples.whitening()
+    return ExtendedChain(directions, terms, values or {}, nominal, 1.0, whitening, samples, chain)
+
+
 def measured(samples, term, size, directions, chain, load):
     """The samples of the same arm with one cause, computed without the code under test."""
     q, tau = samples.q.copy(), samples.torque.copy()
@@ -94,7 +100,7 @@ def test_columns_are_derivatives(seed, shape, joint):
     samples = exact_samples(rng, chain)
     place = POSES // 2 if shape is Shape.LOAD else joint
     term = Term(shape, place)
-    fit = ExtendedChain(samples, directions, (), chain, {}, 0.0, samples.whitening(), chain.gains)
+    fit = fit_of(samples, chain, directions=directions)
     columns = fit.columns([term])
     step = 1e-6
     if shape is Shape.LOAD:
@@ -128,9 +134,7 @@ def test_causes_beyond_what_causes_are_are_not_plausible():
     ]:
         term = Term(shape, 1)
         values = {term: np.array([size])}
-        fit = ExtendedChain(
-            samples, None, (term,), chain, values, 1.0, samples.whitening(), chain.gains
-        )
+        fit = fit_of(samples, chain, (term,), values)
         assert fit.plausible() is good
 
 
@@ -145,7 +149,7 @@ def test_a_sensor_that_does_not_read_has_no_gain(gain, good, nominal):
     samples = exact_samples(rng, chain)
     term = Term(Shape.GAIN, 1)
     moved = replace(chain, gains=chain.gains * [1.0, gain, 1.0])
-    fit = ExtendedChain(samples, None, (term,), moved, {}, 1.0, samples.whitening(), chain.gains)
+    fit = fit_of(samples, moved, (term,), nominal=chain.gains)
     assert fit.plausible() is good
 
 
@@ -157,10 +161,10 @@ def test_gains_are_told_beside_those_that_are_known():
     term = Term(Shape.GAIN, 1)
     moved = replace(chain, gains=chain.gains * [1.0, 1.1, 1.0])
     measured = replace(samples, torque=moved.torque(samples.q))
-    fit = ExtendedChain(measured, None, (term,), moved, {}, 0.0, samples.whitening(), chain.gains)
+    fit = fit_of(measured, moved, (term,), nominal=chain.gains)
     value, error = fit.estimate(term)
     assert value[0] == pytest.approx(1.1)
-    plain = ExtendedChain(measured, None, (term,), moved, {}, 0.0, samples.whitening(), np.ones(3))
+    plain = fit_of(measured, moved, (term,), nominal=np.ones(3))
     assert error[0] == pytest.approx(plain.estimate(term)[1][0] / 40.0)
     np.testing.assert_allclose(fit.effect([term])[:, 1], samples.torque[:, 1] * 0.1)
     assert not fit.effect([term])[:, [0, 2]].any()
