@@ -21,6 +21,9 @@ SILENT_NOISE = 2.0
 UNFELT = 0.05
 """A lever is not felt whose torque at the samples is below this share of that elsewhere (RMS)."""
 STARTS = 6
+PROGRESS = 1e-2
+"""A search ends when a step changes the square of the share, or the axes, by less: shares agree to
+0.002 with those found to rounding (48 random arms of 2 to 6 joints), a twentieth is asked for."""
 MOST_SAMPLES = 60
 SMALL = 0.05
 """Torques of a lever of 1 N m below this everywhere mean nothing [N m]."""
@@ -91,7 +94,7 @@ def _share_felt(chain: ChainParameters, joint: int, free: list[int], q: Array) -
     for _ in range(STARTS):
         axes = Rotation.random(len(free), random_state=rng).as_rotvec().ravel()
         start = np.concatenate([rng.uniform(-np.pi, np.pi, 1), axes])
-        found = least_squares(share, start, max_nfev=40)
+        found = least_squares(share, start, ftol=PROGRESS, xtol=PROGRESS, max_nfev=40)
         least = min(least, float(np.linalg.norm(found.fun)))
         if least < UNFELT:
             break
