@@ -114,7 +114,7 @@ MUTATIONS = (
     ),
     Mutation(
         f"{RIGID}/planning/standard_errors.py",
-        "return np.maximum(linear, fit.spread * np.sqrt(square / len(replicas)))",
+        "return np.maximum(linear, fit.spread * np.sqrt(np.mean(changes**2, axis=0)))",
         "return 0.5 * linear",
         (f"{TESTS}/test_rigid_chain.py::test_standard_errors_are_calibrated",),
         "standard errors are as large as errors",

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
-from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
+from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters, torques_of
 from isotorque.learning.learners.rigid.planning.information import probe_poses
 from isotorque.symbolic.common.single_thread import single_thread
 
@@ -27,6 +29,8 @@ PROGRESS = 1e-2
 MOST_SAMPLES = 60
 SMALL = 0.05
 """Torques of a lever of 1 N m below this everywhere mean nothing [N m]."""
+STEP = 1e-6
+"""Of differences."""
 
 
 @single_thread()
@@ -77,24 +81,37 @@ def _silent_at_end(fit: ChainFit) -> list[int]:
 def _share_felt(chain: ChainParameters, joint: int, free: list[int], q: Array) -> float:
     """Least torque of a lever at the samples, relative to that elsewhere, whatever the axes."""
     probes = probe_poses(chain.n)
-    levers = np.zeros((chain.n, 2))
+    every = np.concatenate([probes, q])
 
-    def share(x: Array) -> Array:
-        rotations = chain.rotations.copy()
-        rotations[free] = Rotation.from_rotvec(x[1:].reshape(-1, 3)).as_matrix()
-        levers[joint] = np.cos(x[0]), np.sin(x[0])
-        one = ChainParameters.of(rotations, levers, parents=chain.parents)
-        elsewhere = float(np.sqrt(np.mean(np.sum(one.torque(probes) ** 2, axis=1))))
-        if elsewhere < SMALL:
-            return np.ones(q.size)
-        return np.asarray(one.torque(q).ravel() / (elsewhere * np.sqrt(len(q))))
+    def shares(trials: Array) -> Array:
+        """Torques (r, N n) at the samples, for directions of the lever and axes (r, p)."""
+        axes = Rotation.from_rotvec(trials[:, 1:].reshape(-1, 3)).as_matrix()
+        axes = axes.reshape(len(trials), len(free), 3, 3)
+        chains = []
+        for angle, turned in zip(trials[:, 0], axes, strict=True):
+            rotations, levers = chain.rotations.copy(), np.zeros((chain.n, 2))
+            rotations[free], levers[joint] = turned, (np.cos(angle), np.sin(angle))
+            chains.append(replace(chain, rotations=rotations, levers=levers, gains=one))
+        torques = torques_of(chains, every)
+        elsewhere = np.sqrt(np.mean(np.sum(torques[:, : len(probes)] ** 2, axis=2), axis=1))
+        felt = torques[:, len(probes) :].reshape(len(trials), -1)
+        small = elsewhere[:, None] < SMALL
+        return np.where(small, 1.0, felt / (elsewhere[:, None] * np.sqrt(len(q))))
 
+    def slopes(x: Array) -> Array:
+        """Differences: all of them in one evaluation."""
+        found = shares(x + STEP * np.eye(len(x) + 1, len(x), -1))
+        return (found[1:] - found[0]).T / STEP
+
+    one, chain = np.ones(chain.n), replace(chain, columns=(), coefficients=np.zeros(0))
     rng = np.random.default_rng(0)
     least = 1.0
     for _ in range(STARTS):
         axes = Rotation.random(len(free), random_state=rng).as_rotvec().ravel()
         start = np.concatenate([rng.uniform(-np.pi, np.pi, 1), axes])
-        found = least_squares(share, start, ftol=PROGRESS, xtol=PROGRESS, max_nfev=40)
+        found = least_squares(
+            lambda x: shares(x[None])[0], start, slopes, ftol=PROGRESS, xtol=PROGRESS, max_nfev=40
+        )
         least = min(least, float(np.linalg.norm(found.fun)))
         if least < UNFELT:
             break

@@ -13,13 +13,13 @@ from isotorque.symbolic.common.compiled import compiled
 
 
 @compiled(error_model="numpy")
-def sweep(parents, rotations, levers, angles, placed, gravity, moments):
+def sweep(parents, rotations, levers, cosines, sines, placed, gravity, moments):
     """Walk out for gravity in every frame, and back for the moments carried, of one pose.
 
     Parameters
     ----------
-    angles : (n,) array
-        Joint angles [rad].
+    cosines, sines : (n,) arrays
+        Of the joint angles.
     placed : (n, 3, 3) array
         Receives ``F_j Rz(q_j)``.
     gravity : (n, 3) array
@@ -29,7 +29,7 @@ def sweep(parents, rotations, levers, angles, placed, gravity, moments):
     """
     n = len(parents)
     for j in range(n):
-        c, s = np.cos(angles[j]), np.sin(angles[j])
+        c, s = cosines[j], sines[j]
         for a in range(3):
             x, y = rotations[j, a, 0], rotations[j, a, 1]
             placed[j, a, 0] = x * c + y * s
@@ -58,14 +58,32 @@ def sweep(parents, rotations, levers, angles, placed, gravity, moments):
 
 
 @compiled(error_model="numpy")
-def chain_torque(parents, rotations, levers, q, torque):
-    """Torques that hold the chain, into ``torque`` (m, n) [N m]."""
+def turns_of(angles, cosines, sines):
+    """Cosines and sines of the joint angles of one pose."""
+    for j in range(len(angles)):
+        cosines[j], sines[j] = np.cos(angles[j]), np.sin(angles[j])
+
+
+@compiled(error_model="numpy")
+def chain_torques(parents, rotations, levers, q, torque):
+    """Torques that hold several chains of one tree: what depends on angles alone is shared.
+
+    Parameters
+    ----------
+    rotations, levers : (r, n, 3, 3), (r, n, 2) arrays
+        Of every chain.
+    torque : (r, m, n) array
+        Receives the torques [N m].
+    """
     m, n = q.shape
+    cosines, sines = np.empty(n), np.empty(n)
     placed, gravity, moments = np.empty((n, 3, 3)), np.empty((n, 3)), np.empty((n, 3))
     for k in range(m):
-        sweep(parents, rotations, levers, q[k], placed, gravity, moments)
-        for j in range(n):
-            torque[k, j] = moments[j, 0] * gravity[j, 1] - moments[j, 1] * gravity[j, 0]
+        turns_of(q[k], cosines, sines)
+        for r in range(len(rotations)):
+            sweep(parents, rotations[r], levers[r], cosines, sines, placed, gravity, moments)
+            for j in range(n):
+                torque[r, k, j] = moments[j, 0] * gravity[j, 1] - moments[j, 1] * gravity[j, 0]
 
 
 @compiled(error_model="numpy")
@@ -92,15 +110,17 @@ def chain_jacobian(parents, rotations, levers, directions, q, torque, turned, le
     """
     m, n = q.shape
     placed, gravity, moments = np.empty((n, 3, 3)), np.empty((n, 3)), np.empty((n, 3))
+    cosines, sines = np.empty(n), np.empty(n)
     before, swung = np.empty((n, 3)), np.empty((n, 3))
     carried, below = np.empty((n, 3)), np.empty(n, dtype=np.bool_)
     turned[:] = 0.0
     leant[:] = 0.0
     stiffness[:] = 0.0
     for k in range(m):
-        sweep(parents, rotations, levers, q[k], placed, gravity, moments)
+        turns_of(q[k], cosines, sines)
+        sweep(parents, rotations, levers, cosines, sines, placed, gravity, moments)
         for j in range(n):
-            c, s = np.cos(q[k, j]), np.sin(q[k, j])
+            c, s = cosines[j], sines[j]
             h, v = moments[j], gravity[j]
             # moment and upward direction in the frame between F and the joint's own turn
             swung[j, 0], swung[j, 1], swung[j, 2] = c * h[0] - s * h[1], s * h[0] + c * h[1], h[2]
@@ -126,7 +146,7 @@ def chain_jacobian(parents, rotations, levers, directions, q, torque, turned, le
                         d = directions[b, a]
                         turned[k, i, 2 * b + a] += d[0] * c0 + d[1] * c1 + d[2] * c2
                     stiffness[k, i, b] += c2
-                    c, s = np.cos(q[k, b]), np.sin(q[k, b])
+                    c, s = cosines[b], sines[b]
                     carried[b, 0], carried[b, 1], carried[b, 2] = (
                         c * y0 + s * y1,
                         c * y1 - s * y0,
@@ -137,7 +157,7 @@ def chain_jacobian(parents, rotations, levers, directions, q, torque, turned, le
             z0, z1, z2 = -moments[i, 1], moments[i, 0], 0.0
             b = i
             while b >= 0:
-                c, s = np.cos(q[k, b]), np.sin(q[k, b])
+                c, s = cosines[b], sines[b]
                 z0, z1 = c * z0 - s * z1, s * z0 + c * z1
                 f, F = before[b], rotations[b]
                 c0, c1, c2 = z1 * f[2] - z2 * f[1], z2 * f[0] - z0 * f[2], z0 * f[1] - z1 * f[0]

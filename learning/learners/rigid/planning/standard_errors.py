@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
-from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
+from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters, torques_of
 from isotorque.learning.learners.rigid.fitting.chain_search import minimise
 from isotorque.symbolic.common.single_thread import single_thread
 
@@ -52,11 +52,8 @@ class TorqueErrors:
         replicas = self.replicas
         if not replicas:
             return linear
-        torque = fit.chain.torque(q)
-        square = np.zeros_like(torque)
-        for replica in replicas:
-            square += (replica.torque(q) - torque) ** 2
-        return np.maximum(linear, fit.spread * np.sqrt(square / len(replicas)))
+        changes = torques_of(replicas, q) - fit.chain.torque(q)
+        return np.maximum(linear, fit.spread * np.sqrt(np.mean(changes**2, axis=0)))
 
     @cached_property
     @single_thread()

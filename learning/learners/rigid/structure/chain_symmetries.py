@@ -11,6 +11,7 @@ from isotorque.learning.learners.rigid.fitting.chain_fit import ChainFit
 from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     ChainParameters,
     raw_directions,
+    torques_of,
 )
 from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
 from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain
@@ -188,6 +189,7 @@ class RelationBounds:
         self._offsets = fit.chain.offsets - self._special.offsets
         largest = float(np.abs(self._here.torque).max())
         self._floor = FLOOR * max(largest, fit.samples.largest_torque)
+        self._roots = [term.root for term in beside.terms]
 
     def violation(
         self, relation: SymmetryRelation, correction: Array, deviations: float
@@ -217,8 +219,7 @@ class RelationBounds:
         slopes = there.slopes - Y[:, None] * here.slopes
         error = deviations / DEVIATIONS * self._error(there, slopes, Y)
         seen = least = np.abs(missed) - error - self._floor
-        for term in self._beside.terms:
-            more = np.linalg.norm(slopes @ term.root, axis=2)
+        for term, more in zip(self._beside.terms, _sizes(slopes, self._roots), strict=True):
             size = np.abs(missed + slopes @ term.change) - np.hypot(error, more)
             least = np.minimum(least, size - term.missed(relation))
         at = least.argmax(axis=0)
@@ -227,11 +228,12 @@ class RelationBounds:
     def _error(self, there: _Evaluated, slopes: Array, Y: Array) -> Array:
         """Standard errors of what relations miss, times `DEVIATIONS`."""
         fit, here = self._fit, self._here
-        error = np.linalg.norm(slopes, axis=2) * fit.spread
-        if len(here.replicas):
-            changed = there.replicas - there.torque - Y * (here.replicas - here.torque)
-            error = np.maximum(error, fit.spread * np.sqrt(np.mean(changed**2, axis=0)))
-        return np.asarray(DEVIATIONS * error)
+        error = np.sqrt(np.einsum("kij,kij->ki", slopes, slopes))
+        if len(here.changes):
+            changed = there.changes - Y * here.changes
+            repeated = np.einsum("rki,rki->ki", changed, changed) / len(changed)
+            error = np.maximum(error, np.sqrt(repeated))
+        return np.asarray(DEVIATIONS * fit.spread * error)
 
     def of(self, relation: SymmetryRelation) -> tuple[Array, Array]:
         """Of gravity alone, and of the measured torque, (n,) [N m] each."""
@@ -248,19 +250,35 @@ class RelationBounds:
         least = np.abs(self._special.gains) * proved
         gravity = np.maximum(least + (np.abs(fitted) + error).max(axis=0), self._floor)
         bound = gravity
-        for term in self._beside.terms:
-            more = np.linalg.norm(slopes @ term.root, axis=2)
+        for term, more in zip(self._beside.terms, _sizes(slopes, self._roots), strict=True):
             size = np.abs(fitted + slopes @ term.change) + np.hypot(error, more)
             bound = np.maximum(bound, least + size.max(axis=0) + term.missed(relation))
         return gravity, bound
 
 
 class _Evaluated:
-    """Torques, their derivatives times the square root of the covariance, and the replicas'."""
+    """Torques, their derivatives times the square root of the covariance, changes of replicas."""
 
     def __init__(self, fit: ChainFit, replicas: list[ChainParameters], q: Array) -> None:
         slopes = fit.chain.derivatives(q, raw_directions(fit.chain.n))
         self.torque = slopes.torque
         information = fit.information
-        self.slopes = slopes.by_parameters()[:, :, information.free] @ information.factor
-        self.replicas = np.array([chain.torque(q) for chain in replicas])
+        free = slopes.by_parameters()[:, :, information.free]
+        self.slopes = _times(free, information.factor)
+        self.changes = torques_of(replicas, q) - self.torque if replicas else np.empty(0)
+
+
+def _times(slopes: Array, matrix: Array) -> Array:
+    """Derivatives (m, n, p) times a matrix (p, r), as one product of large matrices."""
+    m, n, p = slopes.shape
+    return (slopes.reshape(m * n, p) @ matrix).reshape(m, n, -1)
+
+
+def _sizes(slopes: Array, roots: list[Array]) -> list[Array]:
+    """Norms (m, n) of derivatives (m, n, p) times each root (p, r)."""
+    if not roots:
+        return []
+    products = _times(slopes, np.concatenate(roots, axis=1))
+    ends = np.cumsum([root.shape[1] for root in roots])[:-1]
+    parts = np.split(products, ends, axis=2)
+    return [np.sqrt(np.einsum("kij,kij->ki", part, part)) for part in parts]

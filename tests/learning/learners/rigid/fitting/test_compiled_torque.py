@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     ChainParameters,
     raw_directions,
+    torques_of,
 )
 from isotorque.learning.learners.rigid.fitting.compiled_fit import turn
 from isotorque.learning.learners.rigid.fitting.joint_columns import JointColumn, Shape
@@ -50,6 +51,29 @@ def test_built_in_arms_are_chains():
         q = np.random.default_rng(0).uniform(-4, 4, (20, robot.n))
         expected = GravityModel(robot).torque(q)
         assert np.abs(chain_of_tree(robot.tree).torque(q) - expected).max() < 1e-12 * 100
+
+
+@given(chains(), st.integers(1, 4))
+@settings(max_examples=30)
+def test_torques_of_several_chains_are_those_of_each(case, count):
+    chain, rng = case
+    q = rng.uniform(-4, 4, (5, chain.n))
+    several = []
+    for _ in range(count):
+        other = random_chain(rng, chain.n, "random", [int(p) for p in chain.parents])
+        gains, coefficients = rng.uniform(0.5, 2, chain.n), rng.normal(size=2)
+        several.append(
+            replace(other, gains=gains, columns=chain.columns, coefficients=coefficients)
+        )
+    found = torques_of(several, q)
+    assert found.shape == (count, 5, chain.n)
+    for torque, one in zip(found, several, strict=True):
+        np.testing.assert_allclose(torque, one.torque(q), rtol=1e-13, atol=1e-13)
+        plain = replace(one, columns=(), coefficients=np.zeros(0), gains=np.ones(chain.n))
+        own = one.gains * plain.torque(q)  # and what the columns add
+        own[:, 0] += one.coefficients[0]
+        own[:, -1] += one.coefficients[1] * q[:, -1]
+        np.testing.assert_allclose(torque, own, atol=1e-12)
 
 
 @given(chains())
