@@ -10,6 +10,11 @@ from types import ModuleType
 import pytest
 from hypothesis import HealthCheck, Phase, settings
 
+# before NumPy is loaded: tests run in as many processes as there are processors, and threads of
+# linear algebra that wait for each other cost several times what they do
+for library in ("OMP", "OPENBLAS", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
 settings.register_profile(
     "isotorque",
     derandomize=True,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError
 
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
 MAX_DIMENSION = 3
@@ -62,11 +63,9 @@ class AlphaShape:
         if self._order is not None:
             simplices = np.stack([self._order[:-1], self._order[1:]], axis=1)
         elif len(self.points) > dimension:
-            try:
-                self._mesh = Delaunay(self.points)
+            self._mesh = _mesh(self.points)
+            if self._mesh is not None:
                 simplices = self._mesh.simplices
-            except QhullError:  # the points span too few dimensions
-                self._mesh = None
         self.edge_limit, self._kept = _short_simplices(self.points, simplices, edge_factor)
         self.simplices = simplices[self._kept]
 
@@ -99,6 +98,17 @@ class AlphaShape:
         assert self._mesh is not None
         simplex = self._mesh.find_simplex(queries)
         return (simplex >= 0) & self._kept[simplex]
+
+
+@single_thread()
+def _mesh(points: Array) -> Delaunay | None:
+    """Triangulation; None where the points span too few dimensions."""
+    try:
+        mesh = Delaunay(points)
+    except QhullError:
+        return None
+    _ = mesh.transform  # small systems of equations, else solved when a query asks for them
+    return mesh
 
 
 def _short_simplices(

@@ -207,9 +207,10 @@ def _generation(file: RelationsFile, gravity: GravityModel) -> Verdict:
 
 def _generated(group: SymmetryGroup, numbers: set[int]) -> int:
     """Return how many relations of a group some of them generate."""
+    generators = [group[number] for number in numbers]
     reached, fresh = {0}, [0]
     while fresh:
-        products = {group.index(group[g] @ group[x]) for x in fresh for g in numbers}
+        products = {group.index(g @ x) for x in map(group.relation, fresh) for g in generators}
         fresh = sorted(products - reached)
         reached |= products
     return len(reached)
