@@ -75,5 +75,7 @@ class CompiledEquations:
 
 
 def _symmetric(lower: Array) -> Array:
-    """Return the symmetric matrix with the given lower triangle."""
-    return lower + np.tril(lower, -1).T
+    """Return the symmetric matrix with the given lower triangle, zero above it."""
+    whole = lower + lower.T
+    np.fill_diagonal(whole, lower.diagonal())
+    return whole

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,18 +70,29 @@ class FreeDirections:
         """
         return _NUDGE * self.torque_scale * self.projector @ np.cos(np.arange(len(self.projector)))
 
-    def active_stiffness(self, stiffness: Array) -> float:
+    def active_stiffness(self, stiffness: Array) -> Array:
         """Return the smallest eigenvalue of K on the active subspace, joints scaled to 1.
 
         It is positive exactly where the arm can be held by a constant torque; without any active
         direction it is 1, as nothing has to be held.
+
+        Parameters
+        ----------
+        stiffness : (..., n, n) array
+            One or more [N m/rad].
         """
         if len(self.active) == 0:
-            return 1.0
+            return np.ones(stiffness.shape[:-2])
+        products, basis = self._scaled
+        scaled = stiffness * products
+        return np.asarray(np.linalg.eigvalsh(basis.T @ scaled @ basis)[..., 0])
+
+    @cached_property
+    def _scaled(self) -> tuple[Array, Array]:
+        """Scales of the entries of a stiffness, and the active subspace of scaled joints."""
         scale = np.where(self.stiffness_scale > 0.0, self.stiffness_scale, 1.0) ** -0.5
         basis = np.linalg.qr((self.active * scale).T)[0] if self.any else np.eye(len(scale))
-        scaled = stiffness * np.outer(scale, scale)
-        return float(np.linalg.eigvalsh(basis.T @ scaled @ basis)[0])
+        return np.outer(scale, scale), basis
 
 
 def find_free_directions(equations: Equations) -> FreeDirections:

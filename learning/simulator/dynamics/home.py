@@ -47,10 +47,11 @@ def find_home(equations: Equations, free: FreeDirections, limits: Array) -> tupl
     n = len(low)
 
     def lack(q: Array) -> float:
-        return -free.active_stiffness(equations.stiffness(q))
+        return -float(free.active_stiffness(equations.stiffness(q)))
 
     drawn = np.random.default_rng(0).uniform(low, high, (n * _SAMPLES_PER_JOINT, n))
-    order = np.argsort([lack(q) for q in drawn], kind="stable")[:_REFINED]
+    stiffness = np.array([equations.stiffness(q) for q in drawn])
+    order = np.argsort(-free.active_stiffness(stiffness), kind="stable")[:_REFINED]
     bounds = list(zip(low, high, strict=True))
     options = {"maxfev": _EVALUATIONS * n, "xatol": 1e-4, "fatol": 1e-6}
     found = [

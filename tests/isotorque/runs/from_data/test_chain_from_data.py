@@ -16,14 +16,14 @@ from tests.learning.export.compiled_source import build, call, needs_cc
 JOINTS = ("base", "shoulder", "upper", "elbow", "lower", "wrist", "hand")
 
 
-def recording(path, poses, noise=0.0, seed=0, change=lambda q, tau: (q, tau)):
-    """Poses of the panda and torques by Pinocchio alone, under other names; its model."""
-    model = load_robot("panda").model
+def recording(path, poses, noise=0.0, seed=0, change=lambda q, tau: (q, tau), robot="panda"):
+    """Poses of an arm and torques by Pinocchio alone, under other names; its model."""
+    model = load_robot(robot).model
     rng, data = np.random.default_rng(seed), model.createData()
-    q = rng.uniform(-2.5, 2.5, (poses, 7))
+    q, joints = rng.uniform(-2.5, 2.5, (poses, model.nq)), JOINTS[: model.nq]
     tau = np.array([pin.computeGeneralizedGravity(model, data, x) for x in q])
     q, tau = change(q, tau + noise * rng.normal(size=q.shape))
-    header = ",".join([f"{j}.q" for j in JOINTS] + [f"{j}.tau" for j in JOINTS])
+    header = ",".join([f"{j}.q" for j in joints] + [f"{j}.tau" for j in joints])
     rows = "\n".join(",".join(map(repr, row)) for row in np.hstack([q, tau]).tolist())
     path.write_text(f"{header}\n{rows}\n")
     return model
@@ -75,18 +75,18 @@ def test_too_few_poses_say_how_many_are_missing_and_leave_nothing(tmp_path, caps
 
 
 @pytest.mark.parametrize(
-    ("change", "reading"),
+    ("robot", "change", "reading"),
     [
-        (lambda q, tau: (np.rad2deg(q), tau), "the angles are in degrees"),
-        (lambda q, tau: (tau, q), "the columns of angles and torques are exchanged"),
-        (lambda q, tau: (q, tau + 3.0 * q), None),
+        ("panda", lambda q, tau: (np.rad2deg(q), tau), "the angles are in degrees"),
+        ("panda", lambda q, tau: (tau, q), "the columns of angles and torques are exchanged"),
+        ("3r", lambda q, tau: (q, tau + 3.0 * q), None),
     ],
     ids=["degrees", "exchanged", "spring"],
 )
-def test_what_is_no_rigid_chain_is_not_a_model(change, reading, tmp_path, capsys):
+def test_what_is_no_rigid_chain_is_not_a_model(robot, change, reading, tmp_path, capsys):
     """What it would be if it were read otherwise is said; a spring is no reading."""
     data, out = tmp_path / "poses.csv", tmp_path / "out"
-    recording(data, 20, noise=0.02, change=change)
+    recording(data, 20, noise=0.02, change=change, robot=robot)
     assert isotorque("learn", "--data", data, "--out", out, "--torque-noise", 0.02) == 1
     said = capsys.readouterr().out
     assert "no chain that was found explains" in said
@@ -236,14 +236,14 @@ def test_constants_gains_and_signs_become_part_of_the_model(cause, said, kind, t
 )
 def test_a_torque_that_never_changes_is_named(torque, words, tmp_path, capsys):
     def stuck(q, tau):
-        tau[:, 3] = torque
+        tau[:, 1] = torque
         return q, tau
 
     data, out = tmp_path / "poses.csv", tmp_path / "out"
-    recording(data, 10, change=stuck)
+    recording(data, 10, change=stuck, robot="3r")
     assert isotorque("learn", "--data", data, "--out", out) == 1
     said = capsys.readouterr().out
-    assert f"elbow: torque {torque:g} N m in every pose" in said
+    assert f"shoulder: torque {torque:g} N m in every pose" in said
     assert words in said
     assert not out.exists()
 
