@@ -117,15 +117,15 @@ def test_chosen_torques_decide_what_a_short_discovery_left_open():
     short, before = discovered(0)
     assert short.learned.order == 1
     assert "more samples" in short.learned.missing
-    scheme, motions = discovered(20)
-    assert len(before) < len(motions) <= len(before) + 20  # until the relations are known
+    scheme, motions = discovered(10)
+    assert len(before) < len(motions) <= len(before) + 10  # until the relations are known
     for motion, earlier in zip(motions, before, strict=False):
         np.testing.assert_array_equal(motion.outcome.q, earlier.outcome.q)
     chosen = motions[len(before) :]
     assert all(motion.target is None and motion.playback is None for motion in chosen)
     assert scheme.learned.missing is None
     assert scheme.learned.order == 8
-    again, repeated = discovered(20)
+    again, repeated = discovered(10)
     np.testing.assert_array_equal(again.samples[0], scheme.samples[0])
     assert len(repeated) == len(motions)
 

@@ -37,7 +37,7 @@ def test_paired_relations_of_random_arms_are_true(arm, seed, torques):
 @pytest.mark.parametrize(("name", "torques"), [("2r", 6), ("3r", 4), ("4r-planar", 3)])
 def test_exact_recordings_give_the_whole_group(name, torques):
     potential, group = known_potential(name)
-    for seed in range(2 if name != "2r" else 10):
+    for seed in range({"2r": 10, "3r": 2, "4r-planar": 1}[name]):
         q, tau = recording(potential, group, np.random.default_rng(seed), torques)
         learned = pair_relations(q, tau)
         assert learned.missing is None
