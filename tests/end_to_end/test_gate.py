@@ -9,6 +9,9 @@ import pytest
 
 from isotorque.cli.main import status
 
+SHORT = ("--set", "scheme.max_targets=4")
+"""A gate that is never passed ends after so many torques."""
+
 
 def motions(directory):
     with sqlite3.connect(directory / "run.sqlite") as database:
@@ -20,7 +23,7 @@ def motions(directory):
 def stopped(tmp_path_factory):
     """A run that needs more relations than a pendulum has."""
     directory = tmp_path_factory.mktemp("gate") / "run"
-    needs = ["--n-min", "99", "--samples", "60", "--quiet"]
+    needs = ["--n-min", "99", *SHORT, "--samples", "60", "--quiet"]
     assert status(["run", "pendulum", "--out", str(directory), *needs]) == 1
     return directory, needs
 
@@ -60,7 +63,7 @@ def test_it_goes_on_where_it_was_when_asked_to(stopped, capsys):
 
 @pytest.mark.parametrize("strategy", ["direction-sampling", "lattice"])
 def test_learn_stops_too(tmp_path, capsys, strategy):
-    command = ["learn", "pendulum", "--out", str(tmp_path), "--n-min", "99", "--samples", "20"]
+    command = ["learn", "pendulum", "--out", str(tmp_path), "--n-min", "99", "--samples", "20", *SHORT]
     command += ["--strategy", strategy, "--quiet", "--json"]
     assert status(command) == 1
     document = json.loads(capsys.readouterr().out)
@@ -78,5 +81,5 @@ def test_learn_stops_too(tmp_path, capsys, strategy):
 
 @pytest.mark.parametrize("which", ["exact", "none"])
 def test_where_no_relations_are_learned_none_are_waited_for(tmp_path, which):
-    command = ["learn", "pendulum", "--out", str(tmp_path), "--n-min", "99", "--samples", "20"]
+    command = ["learn", "pendulum", "--out", str(tmp_path), "--n-min", "99", "--samples", "20", *SHORT]
     assert status([*command, "--symmetries", which, "--quiet"]) == 0
