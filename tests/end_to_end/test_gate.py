@@ -63,8 +63,8 @@ def test_it_goes_on_where_it_was_when_asked_to(stopped, capsys):
 
 @pytest.mark.parametrize("strategy", ["direction-sampling", "lattice"])
 def test_learn_stops_too(tmp_path, capsys, strategy):
-    command = ["learn", "pendulum", "--out", str(tmp_path), "--n-min", "99", "--samples", "20", *SHORT]
-    command += ["--strategy", strategy, "--quiet", "--json"]
+    command = ["learn", "pendulum", "--out", str(tmp_path), "--n-min", "99", "--samples", "20"]
+    command += [*SHORT, "--strategy", strategy, "--quiet", "--json"]
     assert status(command) == 1
     document = json.loads(capsys.readouterr().out)
     assert document["model"] is None
@@ -81,5 +81,5 @@ def test_learn_stops_too(tmp_path, capsys, strategy):
 
 @pytest.mark.parametrize("which", ["exact", "none"])
 def test_where_no_relations_are_learned_none_are_waited_for(tmp_path, which):
-    command = ["learn", "pendulum", "--out", str(tmp_path), "--n-min", "99", "--samples", "20", *SHORT]
-    assert status([*command, "--symmetries", which, "--quiet"]) == 0
+    command = ["learn", "pendulum", "--out", str(tmp_path), "--n-min", "99", "--samples", "20"]
+    assert status([*command, *SHORT, "--symmetries", which, "--quiet"]) == 0
