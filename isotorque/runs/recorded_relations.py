@@ -125,7 +125,7 @@ def _misfit(learned: LearnedSymmetries) -> dict[str, Any] | None:
     return {
         "failed": lack.failed,
         "said": lack.said,
-        "rms": lack.misfit,
+        "causes": [cause.as_json() for cause in lack.causes],
         "offset_joints": lack.offset_joints + 1,
         "offsets": lack.offsets,
         "offset_errors": lack.offset_errors,

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.relations.identification.group_fit import torque_uncertainty
+from isotorque.learning.relations.lack_of_fit import LackOfFit
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
-from isotorque.learning.statistics.lack_of_fit import LackOfFit
 from isotorque.symbolic.groups.group_arrays import CandidateGroup, lifted_relations
 
 Array = NDArray[np.float64]

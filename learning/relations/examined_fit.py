@@ -7,6 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from isotorque.learning.relations.lack_of_fit import (
+    KINDS,
+    LackOfFit,
+    lack_of_fit,
+    samples_for_alternatives,
+)
 from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
     Undetermined,
@@ -14,12 +20,6 @@ from isotorque.learning.relations.potential.errors_in_variables import (
 from isotorque.learning.relations.potential.inactive_joints import fit_on_active_joints
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.learning.relations.potential.samples_needed import samples_needed
-from isotorque.learning.statistics.lack_of_fit import (
-    KINDS,
-    LackOfFit,
-    lack_of_fit,
-    samples_for_alternatives,
-)
 from isotorque.learning.statistics.poses import by_pose
 from isotorque.learning.statistics.tails import quantile
 
@@ -115,7 +115,5 @@ def examined_fit(q: Array, tau: Array, noise: MeasurementNoise | None) -> Examin
 
 def _explained(fit: FittedPotential, tau: Array) -> bool:
     """Whether a fit leaves nothing but rounding of the torques."""
-    samples = fit.whitened
-    residual = samples.residual.reshape(len(samples.q), -1, 1)
-    left = np.abs(np.linalg.solve(samples.whitening, residual)).max()
+    left = np.abs(fit.whitened.torques(fit.whitened.residual)).max()
     return bool(left <= EXACT * np.abs(tau).max())

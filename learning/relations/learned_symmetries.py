@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
+from isotorque.learning.relations.lack_of_fit import LackOfFit
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
-from isotorque.learning.statistics.lack_of_fit import LackOfFit
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation, identity
 

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.statistics.hidden_effect import hidden_effect
-from isotorque.learning.statistics.tails import tail_probability
 
 Array = NDArray[np.float64]
 
@@ -32,10 +31,6 @@ class AddedTerms:
         Covariance that the terms add to theirs.
     freedom : float
         Degrees of freedom of the noise level of each joint; infinite where noise is known.
-    p_value : float
-        Chance of such an improvement, or a larger one, if the terms are not there.
-    misfit : (k,) array
-        Root mean square over the samples of what they explain better [N m].
     bounded : bool
         Whether samples are too few to estimate them beside noise, and only tell how large they may
         be at most: estimates are zero then, and nothing is tested.
@@ -46,20 +41,12 @@ class AddedTerms:
     change: Array
     more: Array
     freedom: float
-    p_value: float
-    misfit: Array
     bounded: bool = False
 
     def largest(self, deviations: float, reach: Array) -> Array:
         """Largest torque (k,) [N m] so many standard errors allow, functions as large as reach."""
         limit = np.abs(self.terms) + deviations * self.errors
         return np.asarray(np.linalg.norm(limit, axis=1) * reach)
-
-    def outstanding(self) -> NDArray[np.intp]:
-        """Joints whose terms stand out, at least the one where they do most."""
-        ratio = np.linalg.norm(self.terms / np.maximum(self.errors, 1e-300), axis=1)
-        told = np.flatnonzero(ratio >= max(3.0, 0.2 * float(ratio.max(initial=0.0))))
-        return told if len(told) else np.array([int(ratio.argmax())])
 
 
 def added_terms(
@@ -137,8 +124,6 @@ def added_terms(
             np.zeros(design.shape[1]),
             effect @ covariance @ effect.T,
             np.inf,
-            1.0,
-            np.zeros(k),
             bounded=True,
         )
     coordinates = left.T @ residual
@@ -154,20 +139,16 @@ def added_terms(
     weight = np.tile(level, count)
     spread = (left * weight[:, None]).T @ left  # covariance of the coordinates
     own_freedom = np.inf if known_noise else float(freedom) / k
-    statistic = float(coordinates @ np.linalg.solve(spread, coordinates)) if degrees else 0.0
     back = right.T / singular
     terms = back @ coordinates
     covariance = back @ spread @ back.T
     effect = np.linalg.solve(root, held)  # what one unit of a term takes from the parameters
-    torque = np.linalg.solve(whitening, (left @ coordinates).reshape(count, k, 1))[:, :, 0]
     return AddedTerms(
         terms.reshape(k, width) / size,
         np.sqrt(np.maximum(np.diag(covariance), 0.0)).reshape(k, width) / size,
         -effect @ terms,
         effect @ covariance @ effect.T,
         own_freedom,
-        tail_probability(statistic, degrees, own_freedom),
-        np.sqrt(np.mean(torque**2, axis=0)),
     )
 
 
@@ -180,13 +161,3 @@ def second_harmonics(q: Array) -> Array:
     """Torques of twice the angle of their own joint (cables, bent links), (N, k, 2)."""
     turns = 2.0 * q
     return np.stack([np.cos(turns), np.sin(turns)], axis=2)
-
-
-def in_words(found: AddedTerms, joints: NDArray[np.intp]) -> str:
-    """Say the terms that stand out: springs of one number per joint, cables of two."""
-    told, terms = found.outstanding(), found.terms
-    if terms.shape[1] == 1:
-        sizes = ", ".join(f"{terms[j, 0]:+.3g} N m/rad on joint {joints[j] + 1}" for j in told)
-        return f"a torque that grows with its angle (a spring), {sizes}"
-    sizes = ", ".join(f"{np.linalg.norm(terms[j]):.3g} N m on joint {joints[j] + 1}" for j in told)
-    return f"a torque of twice the angle (a cable, a bent link), {sizes}"

@@ -283,8 +283,8 @@ BY_MEASUREMENTS = (
     ),
     Mutation(
         RELATION_ERRORS,
-        "        if advice:\n",
-        "        if False:\n",
+        '(examined.lack.left if noise is None else "") or ',
+        "",
         OF_RELATION_ERRORS,
         "samples in degrees are taken for noisy ones",
     ),

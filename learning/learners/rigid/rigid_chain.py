@@ -309,7 +309,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         Returns
         -------
         tuple of Cause
-            Empty where there is no chain, and none with causes that is far better (`MUCH`).
+            Empty where there is no chain, and none with causes that is far better (`is_clear`).
         """
         if not self.verdict_.accepted and self.verdict_ is not FitStatus.MISFIT:
             return ()

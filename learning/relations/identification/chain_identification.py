@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from isotorque.learning.learners.rigid.causes.diagnose import Diagnosis
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.planning.poses_needed import fewest_poses
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.examined_fit import LARGEST_ERROR, could_be_wrong
 from isotorque.learning.relations.identification.unfelt_levers import unfelt_lever
+from isotorque.learning.relations.lack_of_fit import LackOfFit
 from isotorque.learning.relations.learned_symmetries import (
     Knowledge,
     LearnedRelation,
@@ -20,8 +20,8 @@ from isotorque.learning.relations.learned_symmetries import (
     nothing_learned,
 )
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
+from isotorque.learning.statistics.causes.cause import Cause
 from isotorque.learning.statistics.causes.cause_words import causes_in_words
-from isotorque.learning.statistics.lack_of_fit import LackOfFit
 from isotorque.learning.statistics.poses import by_pose
 from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
@@ -226,9 +226,9 @@ def explained(
     if learner.shown_causes():
         extended = learner.with_causes()
         if extended is None:
-            lack = _lack_of_fit(learner.diagnosis(), n)
+            lack = _beside(learner, learner.shown_causes(), failed=True)
             return learner, f"an arm whose torque is rigid gravity: there is {lack.said}", lack
-        learner, lack = extended, _constants(extended)
+        learner, lack = extended, _beside(extended, extended.causes_, failed=False)
     if not learner.verdict_.accepted:
         return learner, learner.remark_, None
     joint = unfelt_lever(learner.fit_)
@@ -249,22 +249,10 @@ def explained(
     return learner, "", lack
 
 
-def _constants(chain: RigidChain) -> LackOfFit:
-    """Constants and gains that a chain contains beside gravity."""
-    n = chain.fit_.model.n
+def _beside(chain: RigidChain, causes: tuple[Cause, ...], *, failed: bool) -> LackOfFit:
+    """What the samples show beside a chain: in it, or nothing that it has a term for."""
+    errors = np.zeros(chain.fit_.model.n)
     joints = np.array(sorted({column.joint for column in chain.fit_.model.columns}), dtype=int)
-    errors = np.zeros(n)
     errors[joints] = chain.fit_.offset_errors[joints]
-    said = causes_in_words(chain.causes_)
-    return LackOfFit(joints, chain.chain_.offsets, errors, (), np.zeros(n), said)
-
-
-def _lack_of_fit(diagnosis: Diagnosis, joints: int) -> LackOfFit:
-    """What the samples show beside a chain."""
-    misfit = np.zeros(joints)
-    for cause in diagnosis.causes:
-        concerned = cause.joints(joints)
-        misfit[concerned] = np.maximum(misfit[concerned], cause.effect)
-    none = np.zeros(joints)
-    said = causes_in_words(diagnosis.causes)
-    return LackOfFit(np.array([], dtype=int), none, none, (), misfit, said)
+    offsets = chain.fit_.chain.offsets
+    return LackOfFit(causes, joints, offsets, errors, (), failed, causes_in_words(causes))

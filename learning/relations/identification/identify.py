@@ -97,6 +97,7 @@ def identify(
         if _more_than_gravity(waves):
             return waves
     explained = waves is not None and waves.fit is not None
+    explained &= waves is not None and waves.lack is not None and not waves.lack.failed
     chain = identify_by_chain(
         configurations, torques, noise=noise, parents=parents, any_chain=not explained
     )
@@ -114,7 +115,8 @@ def _more_than_gravity(waves: LearnedSymmetries) -> bool:
     lack = waves.lack
     if waves.fit is None or lack is None:
         return False
-    return bool(lack.failed or len(lack.offset_joints) or waves.unmoved)
+    failed = lack.failed and not lack.gains_alone
+    return bool(failed or len(lack.offset_joints) or waves.unmoved)
 
 
 def _without_chain(chain: LearnedSymmetries, waves: LearnedSymmetries) -> LearnedSymmetries:

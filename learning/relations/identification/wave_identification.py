@@ -35,11 +35,8 @@ from isotorque.learning.relations.potential.potential_fit import (
     FittedPotential,
     present_frequencies,
 )
-from isotorque.learning.statistics.misfit_advice import misfit_advice
-from isotorque.learning.statistics.poses import by_pose
 from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.learning.statistics.tails import quantile
-from isotorque.learning.statistics.torque_scales import torque_scales
 from isotorque.symbolic.groups.group_arrays import lifted_relations
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 
@@ -123,20 +120,14 @@ def identify_by_waves(
         return nothing_learned(n, str(lacking), METHOD)
     fit, lack = examined.fit, examined.lack
     if lack.failed:
-        _, poses, means = by_pose(configurations, torques)
-        scales = torque_scales(poses, means, fit.frequencies)
-        said = examined.obstacle if scales is None else f"{examined.obstacle}, or {scales}"
-        return nothing_learned(n, said, METHOD, fit, lack)
+        return nothing_learned(n, examined.obstacle, METHOD, fit, lack)
     best = _best_group(fit)
     if best is None:
         missing = "more samples: no coefficient of the fitted potential stands out of the noise"
         found = nothing_learned(n, missing, METHOD, fit, lack)
     else:
         found = claim(examined, best, snap)
-    if found.decided:
-        return found
-    _, poses, means = by_pose(configurations, torques)
-    return replace(found, missing=misfit_advice(poses, means, fit.frequencies) or found.missing)
+    return found if found.decided else replace(found, missing=examined.lack.left or found.missing)
 
 
 def _best_group(fit: FittedPotential) -> GroupFit | None:

@@ -59,6 +59,12 @@ class WhitenedSamples:
     root: Array
     floor: float
 
+    def torques(self, whitened: Array) -> Array:
+        """Torques (N, k) [N m] of whitened ones (N k,)."""
+        count, k, _ = self.whitening.shape
+        found = np.linalg.solve(self.whitening, whitened.reshape(count, k, 1))
+        return np.asarray(found[:, :, 0])
+
 
 @dataclass(frozen=True, eq=False)
 class FittedPotential:
@@ -93,6 +99,13 @@ class FittedPotential:
     offsets: Array
     offset_errors: Array
     whitened: WhitenedSamples
+
+    @property
+    def explained(self) -> Array:
+        """Whitened torques (N k,) of potential and constants at the samples."""
+        samples = self.whitened
+        estimate = np.concatenate([self.offsets[samples.joints], self.coefficients])
+        return np.asarray(samples.design @ estimate)
 
     @property
     def potential(self) -> TrigonometricPolynomial:

@@ -35,8 +35,6 @@ from isotorque.learning.relations.potential.errors_in_variables import (
 )
 from isotorque.learning.relations.potential.inactive_joints import NEVER_MOVED
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
-from isotorque.learning.statistics.misfit_advice import misfit_advice
-from isotorque.learning.statistics.poses import by_pose
 from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.group_arrays import CandidateGroup
@@ -198,13 +196,13 @@ def _forms(q: Array, tau: Array, noise: MeasurementNoise | None) -> tuple[tuple[
     """Forms that explain the samples, and what is missing where there is none."""
     few = q.shape[1] <= SECOND_OPINION
     waves = _waves(q, tau, noise) if few else None
-    if isinstance(waves, _Waves) and waves.examined.lack.failed:
-        return (), waves.examined.obstacle + _reading(q, tau)
+    if isinstance(waves, _Obstacle) and not waves.gains_alone:
+        return (), waves + _reading(q, tau)
     chain = _chain(q, tau, noise, any_chain=not isinstance(waves, _Waves))
     if not few and isinstance(chain, str):
         waves = _waves(q, tau, noise)
-        if isinstance(waves, _Waves) and waves.examined.lack.failed:
-            return (), waves.examined.obstacle + _reading(q, tau)
+    if isinstance(waves, _Obstacle) and isinstance(chain, str):
+        return (), waves + _reading(q, tau)
     forms = tuple(x for x in (waves, chain) if x is not None and not isinstance(x, str))
     missing = "" if forms else f"{chain} (rigid chain); {waves} (any arm){_reading(q, tau)}"
     return forms, missing
@@ -226,12 +224,9 @@ def _waves(q: Array, tau: Array, noise: MeasurementNoise | None) -> _Waves | str
         examined = examined_fit(q, tau, noise)
     except Undetermined as lacking:
         return str(lacking)
-    if noise is None and not examined.lack.failed:
-        _, configurations, torques = by_pose(q, tau)
-        advice = misfit_advice(configurations, torques, examined.fit.frequencies)
-        if advice:
-            return advice
-    return _Waves(examined)
+    if examined.lack.failed:
+        return _Obstacle(examined)
+    return (examined.lack.left if noise is None else "") or _Waves(examined)
 
 
 def _chain(
@@ -256,6 +251,17 @@ def _deviations(chance: float, n: int, parameters: int, freedom: float) -> float
         return float(min(stats.norm.isf(single), stats.chi2.isf(chance, parameters) ** 0.5))
     together = parameters * stats.f.isf(chance, parameters, freedom)
     return float(min(stats.t.isf(single, freedom), together**0.5))
+
+
+class _Obstacle(str):
+    """Why potentials say nothing: samples show what these have no term for."""
+
+    gains_alone: bool
+
+    def __new__(cls, examined: ExaminedFit) -> _Obstacle:
+        found = super().__new__(cls, examined.obstacle)
+        found.gains_alone = examined.lack.gains_alone
+        return found
 
 
 class _Waves:

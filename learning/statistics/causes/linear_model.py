@@ -147,14 +147,14 @@ class LinearModel:
             return self
         model = self
         for _ in range(REWEIGHTINGS):
+            # components of whitened errors, not joints: errors of angles are felt by all joints,
+            # and combinations of torques in which they cancel would be weighed wrongly
             lever = np.sum(fitted.basis**2, axis=1).reshape(self.q.shape).sum(axis=0)
             spare = np.maximum(len(self.q) - lever, 0.5)
-            root = np.linalg.inv(model.whitening)
-            expected = np.sqrt(np.mean(np.sum(root**2, axis=2), axis=0))
-            found = np.sqrt(np.sum(fitted.rest**2, axis=0) / spare)
-            level = np.maximum(found, self.floor)
-            whitening = model.whitening * (expected / level)
-            model = replace(model, whitening=whitening, noise=level)
+            squares = np.sum(fitted.residual.reshape(self.q.shape) ** 2, axis=0)
+            level = np.maximum(np.sqrt(squares / spare), self.floor / model.noise)
+            whitening = model.whitening / level[:, None]
+            model = replace(model, whitening=whitening, noise=deviations(whitening))
             fitted = model.refitted(fitted.terms, fitted)
         return model
 
@@ -232,6 +232,11 @@ class LinearModel:
         left, values, right = np.linalg.svd(rows / size, full_matrices=False)
         kept = values > DEPENDENT * values.max(initial=0.0)
         return Span(left[:, kept], (right[kept].T / values[kept]) / size[:, None])
+
+
+def deviations(whitening: Array) -> Array:
+    """Standard deviation (n,) of errors that are whitened by (m, n, n), root mean square."""
+    return np.asarray(np.sqrt(np.mean(np.linalg.inv(whitening) ** 2, axis=0).sum(axis=1)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,6 +32,9 @@ ADEQUATE, ADEQUATE_SHARE = 1e-4, 0.02
 """A model explains its samples: chance of the misfit where noise is known, else share of torque."""
 NEGLIGIBLE = 1e-6
 """Causes below this share of the largest torque are where motions ended."""
+MUCH = 5.0
+"""Times that causes must lower what a model leaves of the joint it explains worst, to make a model
+of samples that are none as they stand: an arm that is no chain comes nearer with any cause."""
 SAME = 3.0
 """A gain is a wrong sign if -1 lies within so many standard errors, ..."""
 NEAR = 0.05
@@ -147,6 +150,20 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
     return Selection(model, fit, tuple(choices), is_adequate(model, fit))
 
 
+def is_clear(selection: Selection[F], alone: F) -> bool:
+    """Whether causes make a model of samples that are none as they stand: they leave far less.
+
+    Parameters
+    ----------
+    selection : Selection
+    alone : ExtendedFit
+        Of the model without causes.
+    """
+    before, left = (np.sqrt(np.mean(f.rest**2, axis=0)) for f in (alone, selection.fit))
+    joint = int(np.argmax(before))
+    return bool(selection.adequate and before[joint] > MUCH * left[joint])
+
+
 def is_adequate(model: ExtensibleModel[F], fit: F) -> bool:
     """Whether a fit explains the samples but for noise."""
     if model.noise_known:
@@ -204,13 +221,14 @@ def _scored(
 ) -> Candidate[F]:
     """Likelihood ratio, score and chance of a cause."""
     without, cost = null.cost, max(min(fit.cost, null.cost), 1e-300)
+    left = max(null.spare - df, 1)
+    log_p = float(stats.f.logsf((without - cost) / df / (cost / left), df, left))
+    ratio = _ratio_by_joint(model, null, fit)
     if model.noise_known:
         ratio = without - cost
-        log_p = float(stats.chi2.logsf(max(ratio, 0.0), df))
-    else:
-        left = max(null.spare - df, 1)
-        ratio = _ratio_by_joint(model, null, fit)
-        log_p = float(stats.f.logsf((without - cost) / df / (cost / left), df, left))
+        by_noise = float(stats.chi2.logsf(max(ratio, 0.0), df))
+        # what is left is noise as well where it is more than was stated
+        log_p = by_noise if is_adequate(model, fit) else max(by_noise, log_p)
     if not np.isfinite(log_p):
         log_p = -ratio / 2.0
     score = ratio - df * float(np.log(model.q.size))

@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isotorque.learning.relations.claim_bounds import claim_bounds
+from isotorque.learning.relations.lack_of_fit import Alternative, LackOfFit, lack_of_fit
 from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
-from isotorque.learning.statistics.lack_of_fit import Alternative, LackOfFit, lack_of_fit
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import CandidateGroup, lifted_relations
 from tests.learning.static_data import known_potential
@@ -63,10 +63,9 @@ def test_a_torque_that_may_be_there_is_allowed_for_on_both_sides(seed, name, siz
         return largest * (q / np.pi if spring else np.sin(2.0 * q + phase))
 
     nothing = np.zeros(n)
-    other = Alternative(
-        "spring" if spring else "second harmonic", fit, largest, 1.0, nothing, "it may be there"
-    )
-    lack = LackOfFit(np.zeros(0, dtype=np.intp), nothing, nothing, (other,), nothing, "")
+    other = Alternative("spring" if spring else "second harmonic", fit, largest)
+    no_joints = np.zeros(0, dtype=np.intp)
+    lack = LackOfFit((), no_joints, nothing, nothing, (other,), False, "")
     bound, _ = claim_bounds(fit, lack, group, 3.0)
     q = rng.uniform(-np.pi, np.pi, (4000, n))
     error = worst_errors(lambda x: potential.gradient(x) + more(x), group, q)

@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 
 from isotorque.learning.relations.examined_fit import examined_fit
 from isotorque.learning.relations.identification.wave_identification import identify_by_waves
+from isotorque.learning.relations.lack_of_fit import KINDS
 from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.relations.potential.errors_in_variables import (
     MeasurementNoise,
     Undetermined,
 )
-from isotorque.learning.statistics.lack_of_fit import KINDS
 from isotorque.symbolic.common.angles import wrap
 from tests.learning.static_data import known_potential
 

@@ -20,7 +20,7 @@ from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
 from isotorque.learning.statistics.causes.cause import Cause, causes_of
 from isotorque.learning.statistics.causes.extension import Term
-from isotorque.learning.statistics.causes.selection import Selection, selected
+from isotorque.learning.statistics.causes.selection import Selection, is_clear, selected
 from isotorque.learning.statistics.poses import group_poses
 from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.common.errors import InputError
@@ -30,11 +30,6 @@ Array = NDArray[np.float64]
 
 SPARE_POSES = 2
 """Poses more than determine a chain, from which causes are looked for."""
-
-
-MUCH = 5.0
-"""Times that causes must lower what a chain leaves of the joint it explains worst, to make a chain
-of samples that are none as they stand: an arm that is no chain comes nearer with any cause."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +45,7 @@ class Diagnosis:
     noise : (n,) array
         Standard deviation of the torque errors, stated or estimated [N m].
     clear : bool
-        Whether they do, and leave far less than a chain alone: `MUCH` times.
+        Whether they do, and leave far less than a chain alone (`is_clear`).
     selection : Selection or None
         The fit; None where there are too few poses for a diagnosis.
     missing : str
@@ -173,10 +168,7 @@ def diagnose(
         alone = model.alone([alone.chain], included, AGAIN)
     selection = selected(model, alone)
     causes = causes_of(selection)
-    left = np.sqrt(np.mean(selection.fit.rest**2, axis=0))
-    joint = int(np.argmax(np.sqrt(np.mean(alone.rest**2, axis=0))))
-    before = float(np.sqrt(np.mean(alone.rest[:, joint] ** 2)))
-    clear = selection.adequate and before > MUCH * float(left[joint])
+    clear = is_clear(selection, alone)
     return Diagnosis(causes, selection.adequate, clear, selection.model.noise, selection)
 
 

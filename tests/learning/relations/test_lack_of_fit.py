@@ -1,20 +1,18 @@
 """What a rigid arm has no term for is seen, told with its size, and never claimed over."""
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy import stats
 
 from benchmarks.misfit import Cell, data_set, excess, holds, judged
+from isotorque.learning.relations.lack_of_fit import lack_of_fit
 from isotorque.learning.relations.learn_relations import learn_relations
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
 from isotorque.learning.relations.testing.judge_candidates import Judgement, judge_candidates
-from isotorque.learning.statistics.lack_of_fit import SIGNIFICANCE, Alternative, lack_of_fit
 from tests.learning.static_data import known_potential
 
 seeds = st.integers(0, 2**32 - 1)
@@ -51,7 +49,8 @@ def test_friction_from_one_side_is_never_called_a_constant_alone(seed, name, siz
     q, tau = anywhere(name, rng, rows)
     speed = np.abs(rng.normal(size=q.shape))  # every joint stopped while it moved upwards
     said = learn_relations(q, tau + size * np.sign(speed)).note
-    assert said.count("a constant torque") == q.shape[1]
+    every = "a constant torque on every joint" in said
+    assert every or said.count("a constant torque") == q.shape[1]
     assert "or friction approached from one side: not to be told apart without approach" in said
 
 
@@ -75,7 +74,7 @@ def test_a_cable_over_a_pulley_is_told():
     q, tau = anywhere("2r", rng, 60)
     learned = learn_relations(q, tau + [0.0, 0.2] * np.sin(2.0 * q + 0.4))
     assert learned.order == 1
-    assert "twice the angle (a cable, a bent link), 0.2 N m on joint 2" in learned.missing
+    assert "twice the angle (a cable, a bent link) of 0.2 N m on joint 2" in learned.missing
 
 
 @pytest.mark.parametrize(("name", "rows"), [("2r", 20), ("2r", 200), ("3r", 60)])
@@ -162,37 +161,6 @@ def test_the_judge_sees_what_a_bound_hides():
     assert excess(flipping, "2r", 0.0 * b, k, 0) <= 1.0
 
 
-@given(st.floats(0.05, 0.95), st.integers(1, 3))
-@settings(max_examples=20)
-def test_alternatives_that_are_tried_together_share_the_chance_of_a_false_alarm(at, count):
-    q, tau = anywhere("2r", np.random.default_rng(7), 60)
-    fit = fit_potential(q, tau, all_frequencies(2))
-    likely = Alternative("likely", fit, np.zeros(2), 1.0, np.ones(2), "likely")
-    rare = replace(likely, name="rare", p_value=at * SIGNIFICANCE, said="rare")
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(
-            f"{lack_of_fit.__module__}._alternatives", lambda *_: [rare] + [likely] * (count - 1)
-        )
-        found = lack_of_fit(fit, tau)
-    assert found.failed == (at * SIGNIFICANCE < SIGNIFICANCE / count)
-    assert (found.said == "rare") == found.failed
-
-
-@given(st.floats(0.05, 1.9), st.sampled_from(["2r", "3r"]), st.data())
-@settings(max_examples=20)
-def test_constants_of_several_joints_share_the_chance_of_a_false_alarm(at, name, data):
-    """A constant as rare as a share of the level, on one joint: seen below level / joints."""
-    q, tau = anywhere(name, np.random.default_rng(8), 60)
-    n = q.shape[1]
-    noise = MeasurementNoise(0.0, 0.05)
-    fit = fit_potential(q, tau, all_frequencies(n), noise)
-    joint = data.draw(st.integers(0, n - 1))
-    offsets = np.zeros(n)
-    offsets[joint] = stats.norm.isf(at * SIGNIFICANCE / n / 2) * fit.offset_errors[joint]
-    found = lack_of_fit(replace(fit, offsets=offsets), tau)
-    assert found.offset_joints.tolist() == ([joint] if at < 1 else [])
-
-
 def test_an_alternative_may_be_as_large_as_the_samples_leave_room_for():
     """A spring hidden in the noise: what is allowed for covers it, not only its estimate."""
     covered = []
@@ -205,3 +173,42 @@ def test_an_alternative_may_be_as_large_as_the_samples_leave_room_for():
         spring = next(a for a in lack_of_fit(fit, noisy).alternatives if a.name == "spring")
         covered += (spring.size >= rate * np.pi).tolist()
     assert np.mean(covered) > 0.95
+
+
+def recorded(name, poses, seed, noise=0.02):
+    rng = np.random.default_rng(seed)
+    potential, _ = known_potential(name)
+    q = rng.uniform(-2.0, 2.0, (poses, potential.n))
+    return q, potential.gradient(q) + noise * rng.normal(size=q.shape)
+
+
+def test_a_gain_is_named_and_breaks_no_relation():
+    q, tau = recorded("2r", 60, 1)
+    found = learn_relations(q, tau * [1.3, 1.0])
+    assert found.missing is None
+    assert found.order == 8
+    assert "beside gravity the samples show a gain of" in found.note
+
+
+def test_a_wrong_sign_is_named_and_breaks_no_relation():
+    q, tau = recorded("2r", 60, 1)
+    found = learn_relations(q, tau * [1.0, -1.0])
+    assert found.missing is None
+    assert found.order == 8
+    assert "beside gravity the samples show a wrong sign" in found.note
+
+
+def test_more_samples_are_not_asked_for_where_nothing_known_explains_the_torques():
+    q, tau = recorded("2r", 60, 2)
+    swapped = learn_relations(q, tau[:, ::-1]).missing
+    degrees = learn_relations(np.rad2deg(q), tau).missing
+    for missing in (swapped, degrees):
+        assert "more samples will not help" in missing
+        assert "order of columns, degrees" in missing
+
+
+def test_more_samples_are_asked_for_where_only_noise_is_large():
+    q, tau = recorded("2r", 12, 3, noise=0.5)
+    missing = learn_relations(q, tau).missing
+    assert "more samples" in missing
+    assert "will not help" not in missing

@@ -1,0 +1,63 @@
+"""A fitted potential as a model that causes can be added to."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isotorque.learning.relations.potential.errors_in_variables import stiffness_matrices
+from isotorque.learning.relations.potential.potential_fit import FittedPotential
+from isotorque.learning.statistics.causes.extension import Kind
+from isotorque.learning.statistics.causes.linear_model import KINDS, LinearModel, deviations
+
+MOST_COLUMNS = 300
+"""Beyond, only what adds to the torque is tried: five joints have 242 coefficients, six 728."""
+ADDING = (Kind.OFFSET, Kind.SPRING, Kind.CABLE)
+"""Kinds that add to the torque, whatever the model."""
+
+
+def extensible_waves(fit: FittedPotential) -> LinearModel:
+    """The potential of a fit without constants, at the samples and with the weights of the fit.
+
+    Parameters
+    ----------
+    fit : FittedPotential
+
+    Returns
+    -------
+    LinearModel
+        Of the joints that the potential knows (``fit.whitened.joints``), in their order.
+
+    Examples
+    --------
+    >>> from isotorque.learning.relations.potential.potential_fit import all_frequencies
+    >>> from isotorque.learning.relations.potential.potential_fit import fit_potential
+    >>> from isotorque.learning.statistics.causes.cause import causes_of
+    >>> from isotorque.learning.statistics.causes.selection import selected
+    >>> rng = np.random.default_rng(0)
+    >>> q = rng.uniform(-3.0, 3.0, (40, 2))
+    >>> lower = 6.1 * np.cos(q[:, 0] + q[:, 1])
+    >>> tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
+    >>> tau += [0.0, 0.3] + 0.02 * rng.normal(size=tau.shape)
+    >>> model = extensible_waves(fit_potential(q, tau, all_frequencies(2)))
+    >>> [str(cause.kind) for cause in causes_of(selected(model, model.alone()))]
+    ['offset']
+    """
+    samples = fit.whitened
+    m, k, _ = samples.whitening.shape
+    back = np.linalg.inv(samples.whitening)
+    own = back @ samples.design[:, k:].reshape(m, k, -1)
+    noise = deviations(samples.whitening)
+    frequencies = fit.frequencies[:, samples.joints]
+    known = bool(np.isinf(fit.freedom))
+    model = LinearModel(
+        samples.q,
+        samples.torques(fit.explained + samples.residual),
+        own,
+        samples.whitening,
+        noise,
+        known,
+        np.sqrt(samples.floor) * noise,
+        kinds=KINDS if own.shape[2] <= MOST_COLUMNS else ADDING,
+        stiffness_of=lambda x: stiffness_matrices(frequencies, x, samples.q),
+    )
+    return model.reweighted(model.alone())
