@@ -91,7 +91,7 @@ def test_a_wrong_relation_never_passes(seed, noise, poses, offset, draw):
 
 def test_the_bound_of_the_file_counts_and_the_tolerance_adds():
     off = [0.0, 0.05]  # 0.3 N m at both joints
-    data = recording(4, 30, noise=0.01)  # seed 3 has a false alarm: 2 of 300 do
+    data = recording(4, 30, noise=0.01)
     for bound, tolerance, status in (
         (None, 0.1, Status.REFUTED),
         ([0.35, 0.35], 0.1, Status.TESTED),
