@@ -18,7 +18,8 @@ def cell_step(grid, y, axis):
 def enter(grid, entries, number, y):
     """Enter point ``number`` at the wrapped y with all its images; the new number of entries."""
     rank = y.size
-    grid.point[number] = y
+    for i in range(rank):  # entry by entry: to assign rows takes numba seconds to compile
+        grid.point[number, i] = y[i]
     if grid.start.size == 0:
         return entries
     home = np.empty(rank, dtype=np.int64)
@@ -38,8 +39,10 @@ def enter(grid, entries, number, y):
         place = grid.start[cell + 1]
         for entry in range(entries, place, -1):
             grid.number[entry] = grid.number[entry - 1]
-            grid.position[entry] = grid.position[entry - 1]
-        grid.start[cell + 1 :] += 1
+            for i in range(rank):
+                grid.position[entry, i] = grid.position[entry - 1, i]
+        for later in range(cell + 1, grid.start.size):
+            grid.start[later] += 1
         grid.number[place] = number
         for i in range(rank):
             value = 0.0

@@ -186,7 +186,8 @@ def predict_batch(grid, counts, parameters, y, work, rule, result):
         found, least = search(grid, counts, y[s], work)
         weigh(work, found, least, rule.kernel)
         blend(parameters, work, found, grid.axes, rule)
-        result[s] = work.output
+        for j in range(result.shape[1]):  # to assign rows takes numba seconds to compile
+            result[s, j] = work.output[j]
 
 
 @compiled

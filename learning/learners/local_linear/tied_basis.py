@@ -109,4 +109,5 @@ def tied_features_batch(grid, counts, symmetries, signs, q, radius, kernel, work
         copies_of(symmetries, q[s], images)
         tied_features(grid, counts, images, signs, radius, kernel, work, row)
         for c in range(signs.shape[0]):
-            result[c, s] = row[c]
+            for column in range(result.shape[2]):
+                result[c, s, column] = row[c, column]

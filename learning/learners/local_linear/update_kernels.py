@@ -129,8 +129,11 @@ def remember(stored, memory_q, memory_torque, q, torque, draw):
     else:
         slot = int(draw * stored[1])
     if slot < memory_q.shape[0]:
-        memory_q[slot] = q
-        memory_torque[slot] = torque
+        # entry by entry: to assign rows takes numba longer to compile than all the rest
+        for i in range(q.shape[0]):
+            memory_q[slot, i] = q[i]
+        for i in range(torque.shape[0]):
+            memory_torque[slot, i] = torque[i]
 
 
 @compiled

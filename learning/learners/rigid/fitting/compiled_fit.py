@@ -63,7 +63,10 @@ def turn(rotations, directions, steps):
     for j in range(len(rotations)):
         first = rotation_about(directions[j, 0] * steps[2 * j])
         second = rotation_about(directions[j, 1] * steps[2 * j + 1])
-        result[j] = product(product(rotations[j], first), second)
+        turned = product(product(rotations[j], first), second)
+        for a in range(3):  # entry by entry: to assign a matrix takes numba seconds to compile
+            for b in range(3):
+                result[j, a, b] = turned[a, b]
     return result
 
 
@@ -336,7 +339,8 @@ def levenberg_marquardt(
                 for b in range(flat):
                     block[a, b] /= scale[a] * scale[b]
                 block[a, a] += RIDGE
-                across[a] /= scale[a]
+                for b in range(curved):
+                    across[a, b] /= scale[a]
             solved_across = solve_definite(block, across.copy())
             for a in range(curved):
                 for b in range(curved):
