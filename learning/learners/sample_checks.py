@@ -78,9 +78,8 @@ def checked_samples(
     if sample_weight is None:
         weights = np.ones(len(X))
     else:
-        weights = np.ascontiguousarray(
-            np.broadcast_to(np.asarray(sample_weight, dtype=float), (len(X),))
-        )
+        given = np.broadcast_to(np.asarray(sample_weight, dtype=float), (len(X),))
+        weights = given.copy()  # writable, as ones are: functions are compiled for each kind
         _refuse_non_finite("sample_weight", "weight", weights)
         if weights.min() < 0:
             raise InputError("sample_weight", "weight", weights.min(), "numbers >= 0")

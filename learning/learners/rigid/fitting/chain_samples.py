@@ -40,6 +40,11 @@ class ChainSamples:
     angle_noise: Array
     weights: Array
 
+    def __post_init__(self) -> None:
+        """Lay out q and torque row by row: the search is compiled anew for any other layout."""
+        for name in ("q", "torque"):
+            object.__setattr__(self, name, np.ascontiguousarray(getattr(self, name)))
+
     @property
     def n(self) -> int:
         """Number of joints."""
