@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Self
 
 import numpy as np
@@ -18,7 +18,7 @@ from isotorque.learning.statistics.causes.extended_fit import (
     cause_columns,
     width,
 )
-from isotorque.learning.statistics.causes.extension import Extension, Kind, Shape, Term
+from isotorque.learning.statistics.causes.extension import ADDED, Extension, Kind, Shape, Term
 
 Array = NDArray[np.float64]
 
@@ -29,8 +29,10 @@ PASSES, SETTLED = 6, 1e-4
 """Times that columns which depend on the model are computed anew, at most; until one changes the
 cost by a smaller share."""
 REWEIGHTINGS = 3
-STEPS = 40
-"""Evaluations per unknown gain."""
+PROGRESS = 1e-9
+"""A search for gains ends at a smaller relative step."""
+LEAST_INVERSE = 1e-3
+"""Inverse gains below are those of sensors that read nothing but noise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,11 +136,27 @@ class LinearModel:
     def others(
         self, extension: Extension, terms: Sequence[Term], count: int
     ) -> Sequence[LinearFit]:
-        """The minimum from a wrong sign, where a gain is looked for: all else is linear."""
-        if extension.kind is not Kind.GAIN or extension.joint is None:
+        """The minimum near the one that is linear in inverse gains: all else is linear anyway."""
+        free = [term.place for term in terms if term.shape is Shape.GAIN]
+        if extension.kind is not Kind.GAIN or not free:
+            return []
+        beside = [term for term in terms if term.shape in ADDED]
+        columns = cause_columns(beside, self.q, self.torque, self.directions, None)
+        own = np.concatenate([self.own, columns], axis=2)
+        unit = np.eye(self.q.shape[1])
+        measured = -self.torque[:, :, None] * unit[:, free]
+        target = self.torque.copy()
+        target[:, free] = 0.0
+        rows = (self.whitening @ np.concatenate([own, measured], axis=2)).reshape(target.size, -1)
+        whitened = np.einsum("kij,kj->ki", self.whitening, target).ravel()
+        size = np.linalg.norm(rows, axis=0)
+        size[size == 0.0] = 1.0
+        found = np.linalg.lstsq(rows / size, whitened, DEPENDENT)[0] / size
+        inverse = found[-len(free) :]
+        if not (np.abs(inverse) > LEAST_INVERSE).all():
             return []
         gains = np.ones(self.q.shape[1])
-        gains[extension.joint] = -1.0
+        gains[free] = 1.0 / inverse
         return [self._fitted(tuple(terms), gains, np.zeros(self.own.shape[2]), {})]
 
     def reweighted(self, fitted: LinearFit) -> Self:
@@ -183,31 +201,43 @@ class LinearModel:
 
     def _solved(self, fit: LinearFit, free: Sequence[int]) -> LinearFit:
         """Best unknowns and gains, columns that depend on unknowns taken from a fit."""
-        found = fit
-        if free:  # eliminate what is linear, search for gains
+        if not free:
+            return self._linear(fit)[0]
 
-            def left(some: Array) -> Array:
-                gains = fit.gains.copy()
-                gains[free] = some
-                return self._linear(replace(fit, factors=gains)).residual
-
-            start, least = fit.gains[free], 1e-15
-            solution = least_squares(left, start, method="lm", xtol=least, ftol=least, gtol=least)
+        @lru_cache(maxsize=2)
+        def at(some: tuple[float, ...]) -> tuple[Array, Array]:
             gains = fit.gains.copy()
-            gains[free] = solution.x
-            found = replace(fit, factors=gains)
-        return self._linear(found)
+            gains[list(free)] = some
+            found, explained = self._linear(replace(fit, factors=gains), quick=True)
+            unexplained = found.whitening @ found.columns([Term(Shape.GAIN, j) for j in free])
+            slopes = unexplained.reshape(self.q.size, -1)
+            return explained(found.residual), -explained(slopes)
 
-    def _linear(self, fit: LinearFit) -> LinearFit:
-        """Best unknowns for given gains."""
+        solution = least_squares(  # what is linear is eliminated (Kaufman's Jacobian)
+            lambda some: at(tuple(some))[0],
+            fit.gains[list(free)],
+            lambda some: at(tuple(some))[1],
+            method="lm",
+            xtol=PROGRESS,
+            ftol=PROGRESS,
+        )
+        gains = fit.gains.copy()
+        gains[list(free)] = solution.x
+        return self._linear(replace(fit, factors=gains))[0]
+
+    def _linear(
+        self, fit: LinearFit, *, quick: bool = False
+    ) -> tuple[LinearFit, Callable[[Array], Array]]:
+        """Best unknowns for given gains; and what of values they do not explain."""
         terms = [term for term in fit.terms if term.shape is not Shape.GAIN]
-        span = self.span(fit.gains)
+        span = self.span(fit.gains, quick=quick)
         target = np.einsum("kij,kj->ki", self.whitening, self.torque).ravel()
         columns = cause_columns(terms, self.q, self.torque, self.directions, fit.slopes)
         added = (self.whitening @ columns).reshape(target.size, -1)
         size = np.linalg.norm(added, axis=0)
         size[size == 0.0] = 1.0
-        found = np.linalg.lstsq(span.beyond(added / size), span.beyond(target), DEPENDENT)[0] / size
+        beyond = span.beyond(added / size)
+        found = np.linalg.lstsq(beyond, span.beyond(target), DEPENDENT)[0] / size
         left = target - added @ found
         unknowns = span.unknowns(left)
         loads, values, first = self.own.shape[2], {}, 0
@@ -215,23 +245,34 @@ class LinearModel:
             values[term] = found[first : first + width(term, loads)]
             first += width(term, loads)
         cost = float(np.sum(span.beyond(left) ** 2))
-        return replace(fit, values=values, unknowns=unknowns, cost=cost)
 
-    def span(self, gains: Array) -> Span:
-        """What the unknowns can explain if joints have these gains."""
-        return self._plain_span if (gains == 1.0).all() else self._span(gains)
+        def unexplained(some: Array) -> Array:
+            rest = span.beyond(some)
+            return np.asarray(rest - beyond @ np.linalg.lstsq(beyond, rest, DEPENDENT)[0])
+
+        return replace(fit, values=values, unknowns=unknowns, cost=cost), unexplained
+
+    def span(self, gains: Array, *, quick: bool = False) -> Span:
+        """What the unknowns can explain if joints have these gains; quick: to half the digits."""
+        return self._plain_span if (gains == 1.0).all() else self._span(gains, quick)
 
     @cached_property
     def _plain_span(self) -> Span:
-        return self._span(np.ones(self.q.shape[1]))
+        return self._span(np.ones(self.q.shape[1]), False)
 
-    def _span(self, gains: Array) -> Span:
+    def _span(self, gains: Array, quick: bool) -> Span:
         rows = (self.whitening @ (gains[:, None] * self.own)).reshape(self.q.size, -1)
         size = np.linalg.norm(rows, axis=0)
         size[size == 0.0] = 1.0
-        left, values, right = np.linalg.svd(rows / size, full_matrices=False)
+        rows = rows / size
+        if quick:
+            squares, right = np.linalg.eigh(rows.T @ rows)
+            kept = squares > DEPENDENT * squares.max(initial=0.0)
+            back = right[:, kept] / np.sqrt(squares[kept])
+            return Span(rows @ back, back / size[:, None])
+        left, values, transposed = np.linalg.svd(rows, full_matrices=False)
         kept = values > DEPENDENT * values.max(initial=0.0)
-        return Span(left[:, kept], (right[kept].T / values[kept]) / size[:, None])
+        return Span(left[:, kept], (transposed[kept].T / values[kept]) / size[:, None])
 
 
 def deviations(whitening: Array) -> Array:
