@@ -68,6 +68,7 @@ def judged_claims(robot: str, data: DataSet) -> Claims:
     learned = learn_relations(recorded.q, recorded.tau, noise=stated)
     seconds = time.process_time() - start
     relations = [r.relation for r in learned.relations if not r.relation.is_identity]
+    relations += learned.corrected
     n = recorded.q.shape[1]
     q = np.random.default_rng([len(recorded.q), n]).uniform(-np.pi, np.pi, (PROBES, n))
     ratios = [excess(relation, data, q) for relation in relations if _bounded(relation)]
@@ -89,11 +90,14 @@ def judged_claims(robot: str, data: DataSet) -> Claims:
 
 
 def excess(relation: SymmetryRelation, data: DataSet, q: Array) -> float:
-    """Largest error of a relation of the measured torque, in units of its bound."""
+    """Largest error of a relation of the measured torque, in units of its bound.
+
+    Its correction, if any, has constants alone: angles may be wrapped.
+    """
     image = wrap(relation.configuration(q))
     allowed = relation.bound + FLOOR * data.contamination.arm.peak.max()
     errors = [
-        np.abs(torque(image) - relation.torque(torque(q))).max(axis=0)
+        np.abs(torque(image) - relation.torque(torque(q), q)).max(axis=0)
         for torque in data.recorded.truth
     ]
     return float((np.max(errors, axis=0) / allowed).max())

@@ -71,7 +71,7 @@ def relations_found(
         }
         for entry in learned.relations
     ]
-    return relations_document(learned.group, joints, extra=extra) | {
+    return relations_document(learned.group, joints, extra=extra, corrected=learned.corrected) | {
         "method": learned.method,
         "missing": learned.missing,
         "note": learned.note,
@@ -129,7 +129,7 @@ def _misfit(learned: LearnedSymmetries) -> dict[str, Any] | None:
         "offset_joints": lack.offset_joints + 1,
         "offsets": lack.offsets,
         "offset_errors": lack.offset_errors,
-        "relations_of_gravity_alone": learned.of_gravity_alone,
+        "relations_of_gravity_alone": len(learned.corrected),
     }
 
 

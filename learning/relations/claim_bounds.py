@@ -14,7 +14,12 @@ Array = NDArray[np.float64]
 
 
 def claim_bounds(
-    fit: FittedPotential, lack: LackOfFit, group: CandidateGroup, deviations: float
+    fit: FittedPotential,
+    lack: LackOfFit,
+    group: CandidateGroup,
+    deviations: float,
+    *,
+    corrected: bool = False,
 ) -> tuple[Array, Array]:
     """Bounds on the error of each relation of the measured torque.
 
@@ -26,6 +31,8 @@ def claim_bounds(
     group : CandidateGroup
     deviations : float
         Number of standard errors added everywhere.
+    corrected : bool
+        Of the torque less the constants of ``lack.offset_joints``, not of the torque as measured.
 
     Returns
     -------
@@ -46,12 +53,14 @@ def claim_bounds(
     bound, _ = torque_uncertainty(fit, group, deviations)
     gravity = fit.without_constants(lack.offset_joints)
     _, rms = torque_uncertainty(gravity, group, deviations)
-    bound = bound + _of_constants(fit, group, deviations)
+    taken = lack.offsets.copy() if corrected else np.zeros(len(lack.offsets))
+    taken[np.setdiff1d(np.arange(len(taken)), lack.offset_joints)] = 0.0
+    bound = bound + _of_constants(fit, group, deviations, taken)
     relations = lifted_relations(group)
     unit = np.eye(group.Y.shape[1])
     for other in lack.alternatives:
         wider, _ = torque_uncertainty(other.fit, group, deviations)
-        wider = wider + _of_constants(other.fit, group, deviations)
+        wider = wider + _of_constants(other.fit, group, deviations, taken)
         for i, relation in enumerate(relations):
             if other.name == "spring":
                 kept = (relation.Y[:, None] * unit == relation.A).all(axis=1) & (relation.d == 0.0)
@@ -62,6 +71,8 @@ def claim_bounds(
     return bound, rms
 
 
-def _of_constants(fit: FittedPotential, group: CandidateGroup, deviations: float) -> Array:
-    limit = np.abs(fit.offsets) + deviations * fit.offset_errors
+def _of_constants(
+    fit: FittedPotential, group: CandidateGroup, deviations: float, taken: Array
+) -> Array:
+    limit = np.abs(fit.offsets - taken) + deviations * fit.offset_errors
     return np.asarray((1.0 - group.Y) * limit)

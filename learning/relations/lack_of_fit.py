@@ -22,6 +22,7 @@ from isotorque.learning.statistics.causes.extension import Kind
 from isotorque.learning.statistics.causes.selection import is_clear, selected
 from isotorque.learning.statistics.causes.unexplained import beyond_scatter, beyond_stated_noise
 from isotorque.learning.statistics.poses import Poses
+from isotorque.symbolic.groups.correction import Correction
 
 Array = NDArray[np.float64]
 
@@ -86,6 +87,13 @@ class LackOfFit:
     failed: bool
     said: str
     left: str = ""
+
+    @property
+    def correction(self) -> Correction:
+        """Constants that may be taken off the measured torques: those that were seen."""
+        constant = np.zeros(len(self.offsets))
+        constant[self.offset_joints] = self.offsets[self.offset_joints]
+        return Correction(constant)
 
     @property
     def gains_alone(self) -> bool:

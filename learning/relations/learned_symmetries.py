@@ -148,9 +148,10 @@ class LearnedSymmetries:
         Relations that pairs seem to show and the fitted potential excludes.
     lack : LackOfFit or None
         What the residuals of the fit say: constant torques, and torques that are no rigid gravity.
-    of_gravity_alone : int
+    corrected : tuple of SymmetryRelation
         Relations that hold of gravity but not of the measured torque, because they flip a joint
-        with a constant torque; they are not in the group.
+        with a constant torque; they are not in the group. With their ``correction``, the constant,
+        they hold of the measured torque, within their bounds.
     unmoved : tuple of int
         Joints that never moved: the relations hold at the one angle of each.
     chain : RigidChain or None
@@ -165,7 +166,7 @@ class LearnedSymmetries:
     rejected: tuple[RejectedPairs, ...] = field(default=())
     contradicted: tuple[LearnedRelation, ...] = field(default=())
     lack: LackOfFit | None = None
-    of_gravity_alone: int = 0
+    corrected: tuple[SymmetryRelation, ...] = ()
     unmoved: tuple[int, ...] = ()
     chain: RigidChain | None = None
 
@@ -180,10 +181,10 @@ class LearnedSymmetries:
         if self.lack is None or self.lack.failed or not self.lack.said:
             return None
         said = f"beside gravity the samples show {self.lack.said}"
-        if self.of_gravity_alone:
+        if self.corrected:
             said += (
-                f"; {self.of_gravity_alone} relations that flip such a joint hold of gravity "
-                "alone, not of the measured torque, and are left out"
+                f"; {len(self.corrected)} relations that flip such a joint hold of gravity "
+                "alone, not of the measured torque but with a correction, and are listed apart"
             )
         return said
 

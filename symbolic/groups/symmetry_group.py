@@ -79,6 +79,9 @@ class SymmetryGroup(Sequence[SymmetryRelation]):
         for relation in members:
             if not np.array_equal(relation.basis, members[0].basis):
                 raise InputError("symmetry group", "bases", "different", "one basis for all")
+            if relation.correction is not None:  # members are applied to arrays of torques
+                accepted = "relations of torques less it: of_measured(None)"
+                raise InputError("symmetry group", "relation", "has a correction", accepted)
         members.sort(key=lambda relation: not relation.is_identity)
         self._members: tuple[SymmetryRelation, ...] | None = tuple(members)
         self.basis = members[0].basis

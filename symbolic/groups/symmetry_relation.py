@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.groups.correction import Correction
 
 Array = NDArray[np.float64]
 
@@ -36,6 +37,9 @@ class SymmetryRelation:
         Whether the relation is proved (with an exact d of which ``d`` is the rounding).
     bound : (n,) array, optional
         Bound on |g_i(A q + d) - Y_i g_i(q)| over all q [N m]; NaN where none is known.
+    correction : Correction, optional
+        What the measured torque has beside gravity: the relation is then one of the measured
+        torque, ``tau' - c(q') = Y (tau - c(q))``, and so is its bound.
 
     Attributes
     ----------
@@ -63,6 +67,7 @@ class SymmetryRelation:
     exact: bool
     bound: Array
     unwrapped_d: Array
+    correction: Correction | None
 
     def __init__(
         self,
@@ -72,6 +77,7 @@ class SymmetryRelation:
         basis: ArrayLike | None = None,
         exact: bool = False,
         bound: ArrayLike | None = None,
+        correction: Correction | None = None,
     ) -> None:
         matrix = np.array(A, dtype=float)
         if np.any(np.abs(matrix) > 2.0**53) and not np.array_equal(matrix, np.array(A, object)):
@@ -91,6 +97,8 @@ class SymmetryRelation:
         if rows.ndim != 2 or rows.shape[1] != n:
             raise InputError("relation", "shape of basis", rows.shape, f"(r, {n})")
         limit = np.full(n, np.nan) if bound is None else np.array(bound, dtype=float)
+        if correction is not None and correction.constant.shape != (n,):
+            raise InputError("relation", "joints of correction", len(correction.constant), str(n))
         for name, value in (
             ("A", matrix),
             ("d", wrap(offset)),
@@ -99,6 +107,7 @@ class SymmetryRelation:
             ("exact", bool(exact)),
             ("bound", limit),
             ("unwrapped_d", offset),
+            ("correction", correction),
         ):
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
@@ -145,11 +154,56 @@ class SymmetryRelation:
         """Return the symmetric configuration A q + d of ``q`` (..., n) [rad], not wrapped."""
         return np.asarray(q, dtype=float) @ self.A.T + self.d
 
-    def torque(self, tau: ArrayLike) -> Array:
-        """Return the torque Y tau (..., n) that holds the symmetric configuration."""
-        return np.asarray(tau, dtype=float) * self.Y
+    def torque(self, tau: ArrayLike, q: ArrayLike | None = None) -> Array:
+        """Return the torque (..., n) that holds the symmetric configuration.
+
+        Parameters
+        ----------
+        tau : (..., n) array_like
+            Torque that holds q [N m].
+        q : (..., n) array_like, optional
+            The configuration [rad]; needed where there is a correction.
+
+        Raises
+        ------
+        InputError
+            If there is a correction and no q.
+
+        Examples
+        --------
+        >>> turn = SymmetryRelation([[1.0]], [np.pi], [-1], correction=Correction([0.5]))
+        >>> turn.torque([2.5], [0.0]).tolist()  # 2 N m of gravity, of another sign there
+        [-1.5]
+        """
+        torque = np.asarray(tau, dtype=float)
+        if self.correction is None:
+            return torque * self.Y
+        if q is None:
+            raise InputError("relation", "q", None, "configurations, as there is a correction")
+        gravity = (torque - self.correction.at(q)) * self.Y
+        return gravity + self.correction.at(self.configuration(q))
+
+    def of_measured(
+        self, correction: Correction | None, bound: ArrayLike | None = None
+    ) -> SymmetryRelation:
+        """Return the relation of a torque that has a correction beside gravity; None: of gravity.
+
+        Parameters
+        ----------
+        correction : Correction or None
+        bound : (n,) array_like, optional
+            Of that torque [N m]; as before by default.
+        """
+        limit = self.bound if bound is None else bound
+        return SymmetryRelation(
+            self.A, self.unwrapped_d, self.Y, self.basis, self.exact, limit, correction
+        )
 
     def __matmul__(self, other: SymmetryRelation) -> SymmetryRelation:
+        mine, its = self.correction, other.correction
+        if mine is not its and not (mine is not None and mine.same_as(its)):
+            accepted = "the same for relations that are composed"
+            raise InputError("relation", "correction", "two of them", accepted)
         return SymmetryRelation(
             self.A @ other.A,
             self.A @ other.d + self.d,
@@ -157,6 +211,7 @@ class SymmetryRelation:
             self.basis,
             self.exact and other.exact,
             self.bound + other.bound,
+            self.correction,
         )
 
     def inverse(self) -> SymmetryRelation:
@@ -165,7 +220,15 @@ class SymmetryRelation:
         rounded = np.round(back)
         if np.allclose(back, rounded, atol=1e-9):
             back = rounded + 0.0
-        return SymmetryRelation(back, -back @ self.d, self.Y, self.basis, self.exact, self.bound)
+        return SymmetryRelation(
+            back,
+            -back @ self.d,
+            self.Y,
+            self.basis,
+            self.exact,
+            self.bound,
+            self.correction,
+        )
 
     def same_as(self, other: SymmetryRelation, tolerance: float = SAME_ANGLE) -> bool:
         """Say whether both are one relation: equal Y and A_sat, d_sat equal modulo 2 pi."""
@@ -195,7 +258,8 @@ class SymmetryRelation:
 
     def __str__(self) -> str:
         signs = ", ".join(f"{int(y):+d}" for y in self.Y)
-        return f"{'; '.join(self.line(i) for i in range(self.n))}; Y = diag({signs})"
+        said = f"{'; '.join(self.line(i) for i in range(self.n))}; Y = diag({signs})"
+        return said if self.correction is None else f"{said}; {self.correction.in_words()}"
 
     def in_short(self) -> str:
         """Return in words what the relation changes, nothing of what it leaves alone.

@@ -51,7 +51,7 @@ def verify_relations_on_measurements(
     Parameters
     ----------
     file
-        From `load_relations`; its ``corrections`` are part of the claims.
+        From `load_relations`; corrections of its relations are part of the claims.
     fresh
         Measurements that the relations were not learned from.
     tolerance
@@ -86,15 +86,13 @@ def verify_relations_on_measurements(
     if file.joint_names is not None and file.joint_names != fresh.joint_names:
         found, accepted = list(file.joint_names), f"{list(fresh.joint_names)}, as in {fresh.file}"
         raise InputError(file.source, "joints", found, accepted)
-    shifts = np.zeros((len(file), n)) if file.corrections is None else file.corrections
-    by_form = relation_errors(
-        file.relations, fresh.samples.q, fresh.samples.tau, corrections=list(shifts), noise=noise
-    )
+    every = [*file.relations, *file.corrected]
+    by_form = relation_errors(every, fresh.samples.q, fresh.samples.tau, noise=noise)
     known = _noise(fresh, noise, by_form[0][0])
     beside = fresh.tolerances(tolerance)
     verdicts, entries = [], []
-    for number, relation in enumerate(file, 1):
-        judged = _Judged(number, relation, shifts[number - 1], beside, fresh, known)
+    for number, relation in enumerate(every, 1):
+        judged = _Judged(number, relation, beside, fresh, known)
         verdicts.append(judged.verdict(by_form[number - 1]))
         entries.append(judged.document(by_form[number - 1]))
     if file.order is not None:
@@ -117,26 +115,24 @@ class _Judged:
         self,
         number: int,
         relation: SymmetryRelation,
-        correction: Array,
         beside: Array,
         fresh: FreshMeasurements,
         noise: RowNoise,
     ) -> None:
         bound = np.where(np.isfinite(relation.bound), relation.bound, 0.0)
         self.allowed = bound + beside
-        self._relation, self._correction, self._fresh = relation, correction, fresh
+        self._relation, self._fresh = relation, fresh
         self._claim = (
             f"{OBJECT}: relation {number}: {describe_relation(relation)}, within "
             f"{sizes(self.allowed)} Nm"
         )
         self._pairs = _pairs(relation, fresh, beside)
-        self._found = _compared(
-            self._pairs, relation, correction, fresh, noise, self.allowed + NEAR * beside
-        )
+        allowed = self.allowed + NEAR * beside
+        self._found = _compared(self._pairs, relation, fresh, noise, allowed)
 
     def verdict(self, by_form: tuple[RelationErrors, ...]) -> Verdict:
         """Judge by pairs and by every form: one that contradicts is enough."""
-        if self._relation.is_identity and not self._correction.any():
+        if self._relation.is_identity:
             return Verdict(self._claim, Status.PROVED, 0.0)
         found = self._found
         if found is not None and (found.refuted.any() or found.missed.any()):
@@ -285,7 +281,6 @@ def _pairs(
 def _compared(
     pairs: list[tuple[int, int]],
     relation: SymmetryRelation,
-    correction: Array,
     fresh: FreshMeasurements,
     noise: RowNoise,
     allowed: Array,
@@ -294,7 +289,7 @@ def _compared(
         return None
     first, second = np.array(pairs).T
     tau = fresh.tau
-    errors = tau[second] - relation.torque(tau[first]) - correction
+    errors = tau[second] - relation.torque(tau[first], fresh.q[first])
     variance = fresh.poses.means(noise.variance) / fresh.poses.rows[:, None]
     both = variance[first] + variance[second]
     itself = (1.0 - relation.Y) ** 2 * variance[first]

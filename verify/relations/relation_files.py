@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.strict_json import Field, read_json
+from isotorque.symbolic.groups.correction import Correction
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup, group_structure
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
@@ -45,8 +46,9 @@ class RelationsFile:
         Whether the file claims that no exact relation is missing.
     generate : bool
         Whether the relations are generators, not all members.
-    corrections : (G, n) array or None
-        Constants c of ``tau' = Y tau + c``, where relations of the measured torque have them [N m].
+    corrected : tuple of SymmetryRelation
+        Further ones, of the measured torque less what joints carry beside gravity: each has a
+        ``correction``.
     """
 
     source: str
@@ -55,7 +57,7 @@ class RelationsFile:
     order: int | None = None
     complete: bool = False
     generate: bool = False
-    corrections: Array | None = None
+    corrected: tuple[SymmetryRelation, ...] = ()
 
     def __iter__(self) -> Iterator[SymmetryRelation]:
         return iter(self.relations)
@@ -90,8 +92,8 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     InputError
         For a file that cannot be read or is not JSON, for wrong types, lengths, signs, numbers
         that are not finite, and for optional entries (``joints``, ``order``, ``complete``,
-        ``rank``, ``basis``, ``free_directions``, ``corrections``; ``M``, ``N``, ``rhs``,
-        ``exact``, ``bound``) that are malformed or contradict ``A`` and ``d``. The message names
+        ``rank``, ``basis``, ``free_directions``; ``M``, ``N``, ``rhs``, ``exact``, ``bound``,
+        ``correction``) that are malformed or contradict ``A`` and ``d``. The message names
         the file, the field and the value.
 
     Notes
@@ -122,8 +124,12 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
     relations = tuple(_relation(entry, n, B) for entry in entries)
     _check_group_entries(root, relations, B, n, generate)
     order, complete = root.optional("order"), root.optional("complete")
-    shifts = root.optional("corrections")
-    shifts = None if shifts is None or shifts.value is None else shifts
+    more = root.optional("corrected")
+    further = [] if more is None or more.value is None else more.items()
+    corrected = tuple(_relation(entry, n, B) for entry in further)
+    for entry, relation in zip(further, corrected, strict=True):
+        if relation.correction is None:
+            entry.refuse('a relation with a "correction"')
     return RelationsFile(
         source=document.where,
         relations=relations,
@@ -131,7 +137,7 @@ def load_relations(path: str | Path, *, joint_names: Sequence[str] | None = None
         order=None if order is None else order.integer(),
         complete=complete is not None and complete.boolean(),
         generate=generate,
-        corrections=None if shifts is None else shifts.matrix(rows=len(relations), columns=n),
+        corrected=corrected,
     )
 
 
@@ -141,6 +147,7 @@ def relations_document(
     *,
     extra: Sequence[dict[str, Any]] | None = None,
     generators: bool = False,
+    corrected: Sequence[SymmetryRelation] = (),
 ) -> dict[str, Any]:
     """Return relations in the form of a relations file.
 
@@ -154,6 +161,8 @@ def relations_document(
         More entries for each relation, e.g. how it was learned; must not repeat the standard ones.
     generators
         Write generators of a group under ``generators``, in place of all its ``relations``.
+    corrected
+        Relations of the measured torque with a correction, written apart.
 
     Returns
     -------
@@ -192,20 +201,28 @@ def relations_document(
         }
     additions = [{} for _ in members] if extra is None else extra
     document["generators" if generators else "relations"] = [
-        {
-            "A": _plain(relation.A),
-            "d": relation.d.tolist(),
-            "Y": _plain(relation.Y),
-            "M": _plain(relation.M),
-            "N": _plain(relation.N),
-            "rhs": relation.rhs.tolist(),
-            "exact": relation.exact,
-            "bound": [x if math.isfinite(x) else None for x in relation.bound.tolist()],
-            **more,
-        }
-        for relation, more in zip(members, additions, strict=True)
+        _entry(relation) | more for relation, more in zip(members, additions, strict=True)
     ]
-    return document
+    return document | ({"corrected": [_entry(r) for r in corrected]} if corrected else {})
+
+
+def _entry(relation: SymmetryRelation) -> dict[str, Any]:
+    """A relation as plain data."""
+    entry = {
+        "A": _plain(relation.A),
+        "d": relation.d.tolist(),
+        "Y": _plain(relation.Y),
+        "M": _plain(relation.M),
+        "N": _plain(relation.N),
+        "rhs": relation.rhs.tolist(),
+        "exact": relation.exact,
+        "bound": [x if math.isfinite(x) else None for x in relation.bound.tolist()],
+    }
+    found = relation.correction
+    if found is None:
+        return entry
+    beside = {"constant": found.constant.tolist(), "rate": found.rate.tolist()}
+    return entry | {"correction": beside}
 
 
 def write_relations(path: str | Path, document: dict[str, Any]) -> None:
@@ -268,7 +285,13 @@ def _relation(entry: Field, n: int, basis: NDArray[np.int64] | None) -> Symmetry
     bound = entry.optional("bound")
     limits = None if bound is None else _bound(bound, n)
     relation = SymmetryRelation(
-        A, d, Y, basis, exact=exact is not None and exact.boolean(), bound=limits
+        A,
+        d,
+        Y,
+        basis,
+        exact=exact is not None and exact.boolean(),
+        bound=limits,
+        correction=_correction(entry.optional("correction"), n),
     )
     if basis is not None:
         y_map = basis @ A @ np.linalg.pinv(basis) @ basis
@@ -276,6 +299,18 @@ def _relation(entry: Field, n: int, basis: NDArray[np.int64] | None) -> Symmetry
             entry.entry("A").refuse("a matrix that maps y = B q to y, B being the file's basis")
     _check_paper_form(entry, relation)
     return relation
+
+
+def _correction(field: Field | None, n: int) -> Correction | None:
+    if field is None or field.value is None:
+        return None
+    constant, rate = (field.optional(name) for name in ("constant", "rate"))
+    if constant is None and rate is None:
+        field.refuse('an object with "constant" [N m], "rate" [N m/rad] or both')
+    none = np.zeros(n)
+    return Correction(
+        none if constant is None else constant.vector(n), none if rate is None else rate.vector(n)
+    )
 
 
 def _bound(field: Field, n: int) -> Array | None:

@@ -228,13 +228,14 @@ def judge_closure(file: RelationsFile, there_are: int | None = None) -> Verdict:
     """
     known = "" if there_are is None else f" (of the {there_are} that there are)"
     claim = f"the {len(file)} relations listed{known} form a group"
+    members = [relation.of_measured(None) for relation in file]
     try:
         huge = any(np.abs(relation.A_sat).max(initial=0.0) > LARGE for relation in file)
         if file.generate:
             claim = f"the {len(file)} relations listed generate a group of order {file.order}"
-            closed = not huge and close(file.relations, LARGEST_LIST).order == file.order
+            closed = not huge and close(members, LARGEST_LIST).order == file.order
         else:
-            closed = _closed_exactly(file) if huge else SymmetryGroup(file.relations).is_closed
+            closed = _closed_exactly(file) if huge else SymmetryGroup(members).is_closed
     except InputError:  # a matrix that does not map y = B q to itself, or offsets never come back
         closed = False
     return Verdict(claim, Status.TESTED if closed else Status.REFUTED, np.nan)

@@ -290,10 +290,13 @@ def chain_relations(
 ) -> dict[str, Any]:
     """The relations of a chain as a document."""
     group = symmetries.group
-    return relations_document(group, joint_names, generators=group.order > MOST_LISTED) | {
+    many, extra = group.order > MOST_LISTED, None
+    if symmetries.correction is not None:
+        beside = {"correction": {"constant": symmetries.correction.constant.tolist()}}
+        extra = [beside] * len(group.generators if many else group.listed())
+    return relations_document(group, joint_names, generators=many, extra=extra) | {
         "method": "rigid chain",
         "statement": symmetries.statement,
-        "corrections": symmetries.corrections.tolist() if group.order <= MOST_LISTED else None,
         "hypotheses": [str(h) for h in symmetries.snapped.hypotheses],
         "samples": samples,
     }

@@ -176,6 +176,16 @@ def relations_of_chain(learner: RigidChain, *, any_chain: bool = True) -> Learne
     if excess > 1.0:
         missing = could_be_wrong(len(samples.q), excess)
         return nothing_learned(n, missing, METHOD)
+    flipped = np.zeros(0, dtype=np.intp) if lack is None else lack.offset_joints
+    corrected = (
+        ()
+        if lack is None
+        else tuple(
+            relation.of_measured(lack.correction)
+            for relation in found.group
+            if (relation.Y[flipped] < 0.0).any()
+        )
+    )
     relations = tuple(
         LearnedRelation(
             relation,
@@ -186,7 +196,7 @@ def relations_of_chain(learner: RigidChain, *, any_chain: bool = True) -> Learne
             snapped=bool(found.snapped.hypotheses),
         )
         for relation in found.group
-        if lack is None or (relation.Y[lack.offset_joints] > 0.0).all()
+        if (relation.Y[flipped] > 0.0).all()
     )
     return LearnedSymmetries(
         SymmetryGroup([entry.relation for entry in relations]),
@@ -194,7 +204,7 @@ def relations_of_chain(learner: RigidChain, *, any_chain: bool = True) -> Learne
         None,
         METHOD,
         lack=lack,
-        of_gravity_alone=found.group.order - len(relations),
+        corrected=corrected,
         chain=learner,
     )
 

@@ -37,8 +37,9 @@ from isotorque.learning.relations.potential.potential_fit import (
 )
 from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.learning.statistics.tails import quantile
-from isotorque.symbolic.groups.group_arrays import lifted_relations
+from isotorque.symbolic.groups.group_arrays import CandidateGroup, lifted_relations
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]
 
@@ -130,6 +131,18 @@ def identify_by_waves(
     return found if found.decided else replace(found, missing=examined.lack.left or found.missing)
 
 
+def _corrected(
+    examined: ExaminedFit, whole: CandidateGroup, kept: NDArray[np.intp]
+) -> tuple[SymmetryRelation, ...]:
+    """The relations that flip constants, of the torque less these."""
+    flipping = whole.take(np.setdiff1d(np.arange(len(whole)), kept))
+    if not len(flipping):
+        return ()
+    fit, lack = examined.fit, examined.lack
+    bound, _ = claim_bounds(fit, lack, flipping, examined.deviations, corrected=True)
+    return tuple(r.of_measured(lack.correction) for r in lifted_relations(flipping, bound))
+
+
 def _best_group(fit: FittedPotential) -> GroupFit | None:
     """Largest consistent group over several ideas of which frequencies are present."""
     deviations = quantile(float(stats.norm.isf(SCREEN)), fit.freedom)
@@ -202,6 +215,6 @@ def claim(examined: ExaminedFit, best: GroupFit, snap: bool) -> LearnedSymmetrie
         METHOD,
         fit,
         lack=lack,
-        of_gravity_alone=len(whole) - len(kept),
+        corrected=_corrected(examined, whole, kept),
         unmoved=tuple(unmoved),
     )

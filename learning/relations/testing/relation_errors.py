@@ -8,7 +8,7 @@ of every arm of rigid links, and a rigid chain.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -37,6 +37,7 @@ from isotorque.learning.relations.potential.inactive_joints import NEVER_MOVED
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.groups.correction import Correction
 from isotorque.symbolic.groups.group_arrays import CandidateGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
@@ -92,7 +93,7 @@ class _Form(Protocol):
     freedom: float
 
     def errors(
-        self, relation: SymmetryRelation, correction: Array, chance: float
+        self, relation: SymmetryRelation, chance: float
     ) -> tuple[Array, Array, Array, Array, Array, Array]:
         """As `RelationErrors`: estimate, seen, least, most, beside (n,), and where (n, n)."""
 
@@ -102,7 +103,6 @@ def relation_errors(
     q: ArrayLike,
     tau: ArrayLike,
     *,
-    corrections: Sequence[Array] | None = None,
     noise: MeasurementNoise | None = None,
 ) -> tuple[tuple[RelationErrors, ...], ...]:
     """Say how far the torque behind static samples misses given relations.
@@ -110,11 +110,10 @@ def relation_errors(
     Parameters
     ----------
     relations
-        From a drawing, from another recording.
+        From a drawing, from another recording. What their ``correction`` says is taken off the
+        torques, and the rest judged.
     q, tau : (N, n) array_like
         Configurations at rest [rad], torques that held them [N m]; rows of one pose count as one.
-    corrections : sequence of (n,) arrays, optional
-        Constants c of ``tau' = Y tau + c`` [N m]; zero by default.
     noise : MeasurementNoise, optional
         Noise levels where known.
 
@@ -160,12 +159,17 @@ def relation_errors(
     for relation in relations:
         if relation.n != n:
             raise InputError("relation", "number of joints", relation.n, f"{n}, as samples have")
-    forms, missing = _forms(configurations, torques, noise)
     still = np.ptp(configurations, axis=0) <= NEVER_MOVED
-    shifts = [np.zeros(n)] * len(relations) if corrections is None else corrections
-    chance = CHANCE / max(1, len(relations) * len(forms))
+    fitted: dict[bytes, tuple[tuple[_Form, ...], str]] = {}
     found: list[tuple[RelationErrors, ...]] = []
-    for relation, correction in zip(relations, shifts, strict=True):
+    for relation in relations:
+        correction = relation.correction or Correction(np.zeros(n))
+        key = correction.constant.tobytes() + correction.rate.tobytes()
+        if key not in fitted:
+            gravity = torques - correction.at(configurations)
+            fitted[key] = _forms(configurations, gravity, noise)
+        forms, missing = fitted[key]
+        chance = CHANCE / max(1, len(relations) * len(forms))
         carried = still & ((np.eye(n) != relation.A).any(axis=1) | (relation.d != 0.0))
         if carried.any():
             joints = ", ".join(str(j + 1) for j in np.flatnonzero(carried))
@@ -173,15 +177,13 @@ def relation_errors(
         elif not forms:
             found.append((_nothing(n, missing),))
         else:
-            found.append(tuple(_asked(form, relation, correction, chance) for form in forms))
+            found.append(tuple(_asked(form, relation, chance) for form in forms))
     return tuple(found)
 
 
-def _asked(
-    form: _Form, relation: SymmetryRelation, correction: Array, chance: float
-) -> RelationErrors:
+def _asked(form: _Form, relation: SymmetryRelation, chance: float) -> RelationErrors:
     noise = np.sqrt(np.sum(form.residual**2, axis=0) / form.freedom)
-    found = form.errors(relation, correction, chance)
+    found = form.errors(relation, chance)
     return RelationErrors(*found, form.means, "", noise, form.freedom)
 
 
@@ -279,39 +281,26 @@ class _Waves:
         self.freedom = max(1.0, len(samples.q) - len(samples.root) / len(samples.joints))
 
     def errors(
-        self, relation: SymmetryRelation, correction: Array, chance: float
+        self, relation: SymmetryRelation, chance: float
     ) -> tuple[Array, Array, Array, Array, Array, Array]:
         fit, lack = self.examined.fit, self.examined.lack
-        flipped = relation.Y < 0.0
-        shift = np.where(flipped, correction / 2.0, 0.0)
-        moved = replace(fit, offsets=fit.offsets - shift)
-        others = tuple(
-            replace(a, fit=replace(a.fit, offsets=a.fit.offsets - shift)) for a in lack.alternatives
-        )
         single = CandidateGroup(
             relation.basis, relation.A_sat[None], relation.d_sat[None], relation.Y[None]
         )
-        looked = replace(lack, alternatives=others)
         allowed = self.examined.deviations
-        beside, _ = claim_bounds(moved, looked, single, allowed)
-        known = np.union1d(lack.offset_joints, np.flatnonzero(shift))
-        shown = moved.without_constants(known)
+        beside, _ = claim_bounds(fit, lack, single, allowed)
+        shown = fit.without_constants(lack.offset_joints)
         most, _ = torque_uncertainty(shown, single, allowed)
         most = most + (1.0 - relation.Y) * (np.abs(shown.offsets) + allowed * shown.offset_errors)
-        beyond = np.where(flipped, 0.0, np.abs(correction))
-        parameters = len(fit.whitened.root)
-        deviations = _deviations(chance, relation.n, parameters, fit.freedom)
-        missed, error = self._missed(moved, relation)
-        missed = missed - np.where(flipped, 0.0, correction)
+        deviations = _deviations(chance, relation.n, len(fit.whitened.root), fit.freedom)
+        missed, error = self._missed(fit, relation)
         seen = least = np.abs(missed) - deviations * error
-        for other in others:
+        for other in lack.alternatives:
             miss, more = self._missed(other.fit, relation)
-            miss = miss - np.where(flipped, 0.0, correction)
             least = np.minimum(least, np.abs(miss) - deviations * more - 2.0 * other.size)
         at = least.argmax(axis=0)
-        estimate = np.abs(missed).max(axis=0)
-        sizes = seen.max(axis=0), least.max(axis=0), most[0] + beyond, beside[0] + beyond
-        return estimate, *sizes, self._q[at]
+        sizes = seen.max(axis=0), least.max(axis=0), most[0], beside[0]
+        return np.abs(missed).max(axis=0), *sizes, self._q[at]
 
     def _missed(self, fit: FittedPotential, relation: SymmetryRelation) -> tuple[Array, Array]:
         """What a relation misses at the configurations, and its standard error, (POINTS, n)."""
@@ -338,13 +327,12 @@ class _Chain:
         )
 
     def errors(
-        self, relation: SymmetryRelation, correction: Array, chance: float
+        self, relation: SymmetryRelation, chance: float
     ) -> tuple[Array, Array, Array, Array, Array, Array]:
         fit = self._fit
         freedom = np.inf if fit.verdict is FitStatus.CHI_SQUARE else self.freedom
         deviations = _deviations(chance, relation.n, fit.information.rank, freedom)
-        estimate, seen, least, where = self._bounds.violation(relation, correction, deviations)
-        offsets = fit.chain.offsets
-        beside = np.abs(offsets - relation.Y * offsets - correction)
+        estimate, seen, least, where = self._bounds.violation(relation, deviations)
+        constants = (1.0 - relation.Y) * np.abs(fit.chain.offsets)
         gravity, everything = self._bounds.of(relation)
-        return estimate, seen, least, gravity + beside, everything + beside, where
+        return estimate, seen, least, gravity + constants, everything + constants, where

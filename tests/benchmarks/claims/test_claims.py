@@ -19,7 +19,7 @@ def learned(relations):
     """What a learner would return that claims these."""
     group = list(relations)
     listed = tuple(SimpleNamespace(relation=relation) for relation in group)
-    return SimpleNamespace(group=group, order=len(group), relations=listed)
+    return SimpleNamespace(group=group, order=len(group), relations=listed, corrected=())
 
 
 def exact_claims(robot, bound):

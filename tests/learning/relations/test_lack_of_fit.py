@@ -35,7 +35,14 @@ def test_a_constant_torque_leaves_the_relations_that_do_not_flip_it(seed, name, 
     _, group = known_potential(name)
     kept = [r for r in group if r.Y[joint] > 0]
     assert learned.order == len(kept)
-    assert learned.of_gravity_alone == group.order - len(kept)
+    assert len(learned.corrected) == group.order - len(kept)
+    here = anywhere(name, rng, 100)[0]
+    for relation in learned.corrected:
+        there = relation.configuration(here)
+        gravity = known_potential(name)[0].gradient
+        missed = gravity(there) + b - relation.torque(gravity(here) + b, here)
+        assert (np.abs(missed).max(axis=0) <= relation.bound + 1e-6).all()
+        assert relation.bound.max() < 0.1 * np.abs(b).max()
     np.testing.assert_allclose(learned.lack.offsets, b, atol=1e-6)
     assert f"joint {joint + 1}" in learned.note
     for entry in learned.relations:

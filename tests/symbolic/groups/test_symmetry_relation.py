@@ -1,9 +1,13 @@
-"""Bounds and exactness of composed relations."""
+"""Bounds, exactness and corrections of composed relations."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.groups.correction import Correction
+from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from isotorque.symbolic.symmetries.residual_bound import residual_bound
@@ -40,3 +44,52 @@ def test_a_product_is_exact_if_both_factors_are():
     assert (exact @ exact).exact
     for product in (exact @ other, other @ exact, other @ other):
         assert not product.exact
+
+
+FLIP = SymmetryRelation([[-1, 0], [2, 1]], [0, 0], [1, 1])
+TURN = SymmetryRelation(np.eye(2), [np.pi, 0], [-1, -1])
+
+
+@given(st.integers(0, 2**32 - 1), st.booleans())
+@settings(max_examples=40)
+def test_relations_with_a_correction_hold_of_the_measured_torque_composed_and_inverted(
+    seed, spring
+):
+    """Composed and inverted too; of gravity plus constants and springs, angles not wrapped."""
+    rng = np.random.default_rng(seed)
+    potential = TrigonometricPolynomial([[1, 0], [1, 1]], [0.0, 0.0], [18.4, 6.1])
+    correction = Correction(rng.normal(size=2), rng.normal(size=2) if spring else None)
+
+    def measured(q):
+        return potential.gradient(q) + correction.constant + correction.rate * q
+
+    flip, turn = (r.of_measured(correction) for r in (FLIP, TURN))
+    q = rng.uniform(-5.0, 5.0, (20, 2))
+    for relation in (flip, turn, flip @ turn, turn @ flip, (flip @ turn).inverse()):
+        there = relation.configuration(q)
+        np.testing.assert_allclose(relation.torque(measured(q), q), measured(there), atol=1e-9)
+        assert relation.correction.same_as(correction)
+        plain = relation.of_measured(None)
+        gravity = potential.gradient
+        np.testing.assert_allclose(plain.torque(gravity(q)), gravity(there), atol=1e-9)
+    assert correction.in_words() in str(flip)
+
+
+def test_corrections_that_do_not_fit_are_refused():
+    one, other = (TURN.of_measured(Correction([0.0, x])) for x in (0.5, 0.6))
+    with pytest.raises(InputError, match="the same for relations that are composed"):
+        one @ other
+    with pytest.raises(InputError, match="the same for relations that are composed"):
+        one @ FLIP
+    with pytest.raises(InputError, match="the same for relations that are composed"):
+        FLIP @ one
+    with pytest.raises(InputError, match="configurations, as there is a correction"):
+        one.torque([1.0, 2.0])
+    with pytest.raises(InputError, match="joints of correction"):
+        TURN.of_measured(Correction([0.5]))
+    with pytest.raises(InputError, match="finite"):
+        Correction([np.nan])
+    with pytest.raises(InputError, match="shape of rate"):
+        Correction([0.5], [0.5, 0.5])
+    with pytest.raises(InputError, match="has a correction"):
+        SymmetryGroup([one])  # its arrays would be applied to torques as they are

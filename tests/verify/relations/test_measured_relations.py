@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from isotorque.learning.files.csv_samples import StaticSamples
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.groups.correction import Correction
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.verify.models.fresh_measurements import FreshMeasurements
 from isotorque.verify.relations.measured_relations import verify_relations_on_measurements
@@ -164,11 +165,34 @@ def test_constants_contradict_flips_unless_the_file_corrects_them():
     flip, turn = verify_relations_on_measurements(claims(FLIP, TURN), data).verdicts
     assert flip.status is Status.TESTED
     assert not turn.passed
-    corrected = claims(FLIP, TURN, corrections=np.array([[0.0, 0.0], [0.0, 2.0]]))
-    judged = verify_relations_on_measurements(corrected, data)
-    assert [v.status for v in judged.verdicts] == [Status.TESTED] * 2
-    moved = claims(IDENTITY, corrections=np.array([[0.0, 1.0]]))
-    assert not verify_relations_on_measurements(moved, data).verdicts[0].passed
+    correction = Correction([0.0, 1.0])
+    file = claims(FLIP, corrected=(TURN.of_measured(correction), FLIP.of_measured(correction)))
+    judged = verify_relations_on_measurements(file, data)
+    assert [v.status for v in judged.verdicts] == [Status.TESTED] * 3
+    opposite = claims(TURN.of_measured(Correction([0.0, -1.0])))
+    assert not verify_relations_on_measurements(opposite, data).verdicts[0].passed
+
+
+def test_springs_are_taken_off_where_the_file_says_so():
+    """Angles count as they are: a turn of a joint with a spring makes a difference."""
+    rate = np.array([0.0, 0.4])
+    q = np.random.default_rng(5).uniform(-2.5, 2.5, (40, 2))
+    data = fresh(q, torque(q) + rate * q, 0.01)
+    assert not verify_relations_on_measurements(claims(FLIP), data).verdicts[0].passed
+    true = claims(FLIP.of_measured(Correction([0.0, 0.0], rate)))
+    assert verify_relations_on_measurements(true, data).verdicts[0].status is Status.TESTED
+    half = claims(FLIP.of_measured(Correction([0.0, 0.0], 0.5 * rate)))
+    assert not verify_relations_on_measurements(half, data).verdicts[0].passed
+
+
+def test_pairs_are_compared_less_their_corrections():
+    data = paired(FLIP, function=lambda q: bent(q) + [0.0, 0.5] * q)
+    plain = verify_relations_on_measurements(claims(FLIP), data, noise=SMALL).verdicts[0]
+    assert plain.status is Status.REFUTED
+    corrected = claims(FLIP.of_measured(Correction([0.0, 0.0], [0.0, 0.5])))
+    judged = verify_relations_on_measurements(corrected, data, noise=SMALL).verdicts[0]
+    assert judged.status is Status.TESTED
+    assert "pairs of poses" in judged.reason
 
 
 def test_what_measurements_cannot_tell_is_said_and_a_group_is_judged():

@@ -48,14 +48,28 @@ def test_what_is_written_is_read_back(tmp_path_factory, arm):
         assert read.exact == written.exact
 
 
-def test_corrections_are_one_constant_per_joint_and_relation(tmp_path):
+def test_corrections_are_read_with_their_relations(tmp_path):
     entry = {"A": [[-1, 0], [2, 1]], "d": [0, 0], "Y": [1, 1]}
-    for stated in (None, [[0, 0.5]]):
-        found = load(tmp_path, {"relations": [entry], "corrections": stated}).corrections
-        assert found is None if stated is None else np.array_equal(found, stated)
-    for stated in ([[0.5]], [[0, 0], [0, 0]], [["a", 0]], 1):
-        with pytest.raises(InputError, match="corrections"):
-            load(tmp_path, {"relations": [entry], "corrections": stated})
+    for stated, constant, rate in (
+        ({"constant": [0, 0.5]}, [0, 0.5], [0, 0]),
+        ({"constant": [0, 0.5], "rate": [1, 0]}, [0, 0.5], [1, 0]),
+        ({"rate": [1, 0]}, [0, 0], [1, 0]),
+    ):
+        found = load(tmp_path, {"relations": [entry | {"correction": stated}]})
+        correction = found.relations[0].correction
+        assert (correction.constant.tolist(), correction.rate.tolist()) == (constant, rate)
+        written = relations_document(found.relations, ["a", "b"], corrected=found.relations)
+        again = load(tmp_path, written)
+        for read in (*again.relations, *again.corrected):
+            assert read.correction.same_as(correction)
+    plain = load(tmp_path, {"relations": [entry | {"correction": None}]}).relations[0]
+    assert plain.correction is None
+    wrong = ([0.5], {"constant": [0.5]}, {"constant": ["a", 0]}, {}, 1)
+    for stated in wrong:
+        with pytest.raises(InputError, match="correction"):
+            load(tmp_path, {"relations": [entry | {"correction": stated}]})
+    with pytest.raises(InputError, match='a relation with a "correction"'):
+        load(tmp_path, {"relations": [entry], "corrected": [entry]})
 
 
 def test_A_d_and_Y_suffice(tmp_path):

@@ -19,6 +19,7 @@ from isotorque.learning.learners.rigid.structure.expansion import expanded
 from isotorque.learning.learners.rigid.structure.snapping import SnappedChain
 from isotorque.learning.statistics.constant_torques import OR_FRICTION
 from isotorque.symbolic.common.single_thread import single_thread
+from isotorque.symbolic.groups.correction import Correction
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
 from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
@@ -51,9 +52,9 @@ class ChainSymmetries:
         The same of gravity alone, if the arm is a rigid chain [N m].
     shown : str
         What the samples show beside the chain: where they do, its relations are not to be claimed.
-    corrections : (order, n) array
-        c of each relation of the measured torque, ``tau' = Y tau + c`` [N m]: twice the offset of
-        the sensor where the torque changes sign.
+    correction : Correction or None
+        Constants of the sensors, which are no gravity: relations of the measured torque hold with
+        it, ``tau' - c = Y (tau - c)``. None where the chain has none.
     snapped : SnappedChain
         The chain that the group belongs to.
     alternatives : tuple of SymmetryGroup
@@ -63,7 +64,7 @@ class ChainSymmetries:
     group: SymmetryGroup
     gravity_bounds: Array
     shown: str
-    corrections: Array
+    correction: Correction | None
     snapped: SnappedChain
     alternatives: tuple[SymmetryGroup, ...] = ()
 
@@ -92,11 +93,11 @@ class ChainSymmetries:
     @property
     def _object(self) -> str:
         """What the relations speak of, where that is not the measured torque."""
-        if not self.corrections.any():
+        if self.correction is None:
             return ""
-        sizes = ", ".join(f"{x:.3g}" for x in np.abs(self.corrections).max(axis=0) / 2.0)
+        sizes = ", ".join(f"{x:.3g}" for x in self.correction.constant)
         return (
-            f"; joints have constant torques of at most ({sizes}) N m beside gravity{OR_FRICTION}; "
+            f"; joints have constant torques of ({sizes}) N m beside gravity{OR_FRICTION}; "
             "relations that change their sign hold of gravity, of the measured torque with "
             "corrections"
         )
@@ -157,8 +158,8 @@ def chain_symmetries(
             )
         )
     offsets = fit.chain.offsets
-    corrections = np.array([offsets - r.Y * offsets for r in bounded[0]])
-    return ChainSymmetries(bounded[0], gravity[0], shown, corrections, snapped, tuple(bounded[1:]))
+    correction = Correction(offsets) if offsets.any() else None
+    return ChainSymmetries(bounded[0], gravity[0], shown, correction, snapped, tuple(bounded[1:]))
 
 
 class RelationBounds:
@@ -192,16 +193,14 @@ class RelationBounds:
         self._roots = [term.root for term in beside.terms]
 
     def violation(
-        self, relation: SymmetryRelation, correction: Array, deviations: float
+        self, relation: SymmetryRelation, deviations: float
     ) -> tuple[Array, Array, Array, Array]:
-        """How far the measured torque misses ``tau' = Y tau + correction``, any relation.
+        """How far the measured torque misses ``tau' = Y tau``, any relation.
 
         Parameters
         ----------
         relation
-            Need be none of the chain's.
-        correction : (n,) array
-            [N m].
+            Need be none of the chain's; its correction is not looked at.
         deviations
             Standard errors that are taken off.
 
@@ -215,7 +214,7 @@ class RelationBounds:
         """
         fit, here, Y = self._fit, self._here, relation.Y
         there = _Evaluated(fit, self._errors.replicas, relation.configuration(self._q))
-        missed = there.torque - Y * here.torque - correction
+        missed = there.torque - Y * here.torque
         slopes = there.slopes - Y[:, None] * here.slopes
         error = deviations / DEVIATIONS * self._error(there, slopes, Y)
         seen = least = np.abs(missed) - error - self._floor

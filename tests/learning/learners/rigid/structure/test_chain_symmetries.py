@@ -59,18 +59,20 @@ def test_bounds_hold_in_noise(name):
 
 
 def test_relations_of_a_biased_sensor_carry_a_correction():
-    """tau' = Y tau + c: twice the offset where the torque changes sign."""
+    """The constants of its joints: found, and right of the torque that it shows."""
     gravity = GravityModel(load_robot("3r"))
     offsets = np.array([1.0, -0.5, 0.2])
     q = random_poses(np.random.default_rng(0), 12, 3)
     learner = RigidChain(unknown_offsets=True).fit(q, gravity.torque(q) + offsets)
     found = learner.symmetries()
     assert found.group.order == 16
-    for relation, c in zip(found.group, found.corrections, strict=True):
-        np.testing.assert_allclose(c, offsets - relation.Y * offsets, atol=1e-8)
+    np.testing.assert_allclose(found.correction.constant, offsets, atol=1e-8)
+    for relation in found.group:
         measured = gravity.torque(relation.configuration(q)) + offsets
-        expected = relation.Y * (gravity.torque(q) + offsets) + c
+        corrected = relation.of_measured(found.correction)
+        expected = corrected.torque(gravity.torque(q) + offsets, q)
         np.testing.assert_allclose(measured, expected, atol=1e-7)
+    assert RigidChain().fit(q, gravity.torque(q)).symmetries().correction is None
 
 
 def test_a_tolerance_adds_relations_that_nearly_hold():
