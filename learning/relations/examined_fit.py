@@ -102,7 +102,7 @@ def examined_fit(q: Array, tau: Array, noise: MeasurementNoise | None) -> Examin
     poses, q, torques = by_pose(q, tau)
     fit, unmoved = fit_on_active_joints(q, torques, noise, LARGEST_ERROR)
     deviations = quantile(BOUND_DEVIATIONS, fit.freedom)
-    lack = lack_of_fit(fit, torques, poses=poses, rows=tau, deviations=deviations)
+    lack = lack_of_fit(fit, poses=poses, rows=tau, deviations=deviations)
     if len(lack.alternatives) < KINDS and not _explained(fit, torques):
         least = samples_for_alternatives(fit)
         raise Undetermined(

@@ -104,7 +104,6 @@ class LackOfFit:
 
 def lack_of_fit(
     fit: FittedPotential,
-    tau: Array,
     *,
     poses: Poses | None = None,
     rows: Array | None = None,
@@ -116,8 +115,6 @@ def lack_of_fit(
     ----------
     fit : FittedPotential
         Of one sample per pose.
-    tau : (N, n) array
-        Torques of these samples [N m].
     poses : Poses, optional
         How rows were grouped into samples.
     rows : (N', n) array, optional
@@ -149,14 +146,15 @@ def lack_of_fit(
     >>> tau = np.stack([18.4 * np.cos(q[:, 0]) + lower, lower], axis=1)
     >>> tau += 0.02 * rng.normal(size=tau.shape)
     >>> def examined(tau):
-    ...     return lack_of_fit(fit_potential(q, tau, all_frequencies(2)), tau)
+    ...     return lack_of_fit(fit_potential(q, tau, all_frequencies(2)))
     >>> examined(tau).said
     ''
     >>> examined(tau + [0.0, 0.3]).said
     'a constant torque of +0.304 N m on joint 2 (standard error 0.003), or friction approached from
     one side: not to be told apart without approach directions'
     >>> examined(tau + [0.0, 0.2] * q).said
-    'a torque that grows with its angle (a spring), +0.194 N m/rad on joint 2'
+    'a torque that grows with its angle (a spring) of +0.194 N m/rad on joint 2 (standard error
+    0.003)'
     """
     model = extensible_waves(fit)
     alone = model.alone()

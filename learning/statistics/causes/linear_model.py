@@ -208,10 +208,9 @@ class LinearModel:
         def at(some: tuple[float, ...]) -> tuple[Array, Array]:
             gains = fit.gains.copy()
             gains[list(free)] = some
-            found, explained = self._linear(replace(fit, factors=gains), quick=True)
-            unexplained = found.whitening @ found.columns([Term(Shape.GAIN, j) for j in free])
-            slopes = unexplained.reshape(self.q.size, -1)
-            return explained(found.residual), -explained(slopes)
+            found, left_of = self._linear(replace(fit, factors=gains), quick=True)
+            slopes = found.whitening @ found.columns([Term(Shape.GAIN, j) for j in free])
+            return found.residual, -left_of(slopes.reshape(self.q.size, -1))
 
         solution = least_squares(  # what is linear is eliminated (Kaufman's Jacobian)
             lambda some: at(tuple(some))[0],
@@ -246,11 +245,11 @@ class LinearModel:
             first += width(term, loads)
         cost = float(np.sum(span.beyond(left) ** 2))
 
-        def unexplained(some: Array) -> Array:
+        def left_of(some: Array) -> Array:
             rest = span.beyond(some)
             return np.asarray(rest - beyond @ np.linalg.lstsq(beyond, rest, DEPENDENT)[0])
 
-        return replace(fit, values=values, unknowns=unknowns, cost=cost), unexplained
+        return replace(fit, values=values, unknowns=unknowns, cost=cost), left_of
 
     def span(self, gains: Array, *, quick: bool = False) -> Span:
         """What the unknowns can explain if joints have these gains; quick: to half the digits."""

@@ -19,6 +19,9 @@ FAMILY_WISE, LATER = 0.01, 0.001
 named beside the first cause where there is nothing else."""
 TIED = 6.0
 """Candidates whose scores (2 log Bayes factor) differ by less cannot be told apart."""
+SAYS_MORE = 0.05
+"""A cause that contains the one that is named is told beside it if its further unknowns explain so
+much that chance would more rarely than this: it is compatible in any case."""
 MOST = 3
 """Causes that are named at most."""
 LOOKED_AT = 4
@@ -250,10 +253,22 @@ def _ratio_by_joint(model: ExtensibleModel[F], null: F, fit: F) -> float:
 
 
 def _simplest(found: Sequence[Candidate[F]]) -> tuple[Candidate[F], list[Candidate[F]]]:
-    """Of those that cannot be told apart, the one with the fewest unknowns; and the others."""
+    """Of those that cannot be told apart, the one with the fewest unknowns; and the others.
+
+    One that contains it is another only where its further unknowns explain something.
+    """
     near = [c for c in found if found[0].score - c.score < TIED]
     near.sort(key=lambda c: (c.degrees, -c.score))
-    return near[0], near[1:]
+    best = near[0]
+    inside = set(best.extension.terms)
+
+    def is_another(other: Candidate[F]) -> bool:
+        more = other.degrees - best.degrees
+        if not inside < set(other.extension.terms) or more < 1:
+            return True
+        return bool(other.ratio - best.ratio > stats.chi2.isf(SAYS_MORE, more))
+
+    return best, [other for other in near[1:] if is_another(other)]
 
 
 def _renamed(extension: Extension, fit: ExtendedFit) -> Extension:

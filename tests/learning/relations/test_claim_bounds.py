@@ -40,7 +40,7 @@ def test_a_constant_makes_relations_that_flip_it_wrong_by_twice_its_size(seed, n
     n = int(name[0])
     constants = size * np.random.default_rng(seed).uniform(-1, 1, n)
     potential, fit, tau, group = arm(name, constants)
-    bound, rms = claim_bounds(fit, lack_of_fit(fit, tau), group, 3.0)
+    bound, rms = claim_bounds(fit, lack_of_fit(fit), group, 3.0)
     q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (200, n))
     error = worst_errors(lambda x: potential.gradient(x) + constants, group, q)
     scale = np.abs(tau).max()

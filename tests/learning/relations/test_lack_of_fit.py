@@ -98,7 +98,7 @@ def test_noise_of_a_rigid_arm_is_no_misfit(name, rows):
             (q + 0.005 * rng.normal(size=q.shape), tau),
         ):
             fit = fit_potential(noisy_q, noisy, all_frequencies(q.shape[1]))
-            alarms += lack_of_fit(fit, noisy).failed
+            alarms += lack_of_fit(fit).failed
     assert alarms == 0
 
 
@@ -177,7 +177,7 @@ def test_an_alternative_may_be_as_large_as_the_samples_leave_room_for():
         rate = 0.01
         noisy = tau + rate * q + 0.05 * rng.normal(size=q.shape)
         fit = fit_potential(q, noisy, all_frequencies(2))
-        spring = next(a for a in lack_of_fit(fit, noisy).alternatives if a.name == "spring")
+        spring = next(a for a in lack_of_fit(fit).alternatives if a.name == "spring")
         covered += (spring.size >= rate * np.pi).tolist()
     assert np.mean(covered) > 0.95
 
