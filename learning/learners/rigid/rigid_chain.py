@@ -411,6 +411,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         return diagnose(
             samples.q,
             samples.torque,
+            weight=samples.weights,
             torque_noise=self.torque_noise,
             angle_noise=self.angle_noise,
             parents=self.parents,

@@ -66,6 +66,7 @@ def diagnose(
     tau: ArrayLike,
     *,
     directions: ArrayLike | None = None,
+    weight: ArrayLike | None = None,
     torque_noise: float | Sequence[float] | None = None,
     angle_noise: float | Sequence[float] = 0.0,
     parents: Sequence[int] | None = None,
@@ -82,6 +83,8 @@ def diagnose(
         Rows: configurations [rad] and torques [N m].
     directions : (N, n) array_like, optional
         Signs of the last motion of every joint before the arm came to rest; 0 where not known.
+    weight : (N,) array_like, optional
+        Of the squared errors of rows, above 0; what counts is how they differ.
     torque_noise : float or sequence of float, optional
         Standard deviation of the torque error [N m]; estimated for every joint by default.
     angle_noise : float or sequence of float
@@ -132,7 +135,13 @@ def diagnose(
         if sides.shape != configurations.shape or not np.isfinite(sides).all():
             accepted = f"a sign for every angle, shape {configurations.shape}"
             raise InputError("diagnose", "directions", f"shape {sides.shape}", accepted)
-    configurations, torques, sides = _by_pose_and_side(configurations, torques, sides)
+    weights = np.ones(len(torques)) if weight is None else np.asarray(weight, dtype=float)
+    if weights.shape != torques.shape[:1] or not (np.isfinite(weights) & (weights > 0.0)).all():
+        accepted = f"a number above 0 for every row, shape {torques.shape[:1]}"
+        raise InputError("diagnose", "weight", f"shape {weights.shape}", accepted)
+    configurations, torques, sides, weights = _by_pose_and_side(
+        configurations, torques, sides, weights
+    )
     m, n = configurations.shape
     stated = 0.0 if torque_noise is None else torque_noise
     samples = ChainSamples(
@@ -140,7 +149,7 @@ def diagnose(
         torques,
         noise_by_joint("diagnose", "torque_noise", stated, n),
         noise_by_joint("diagnose", "angle_noise", angle_noise, n),
-        np.ones(m),
+        weights / weights.mean() if m else weights,
     )
     family = ChainModel(
         serial(n) if parents is None else checked_parents(parents, n),
@@ -173,14 +182,14 @@ def diagnose(
 
 
 def _by_pose_and_side(
-    q: Array, tau: Array, sides: Array | None
-) -> tuple[Array, Array, Array | None]:
-    """One sample per pose, and per direction of approach where these are known."""
+    q: Array, tau: Array, sides: Array | None, weight: Array
+) -> tuple[Array, Array, Array | None, Array]:
+    """One sample per pose, and per direction of approach where these are known: weighted means."""
     poses = group_poses(q)
     if not poses.repeated:
-        return q, tau, sides
-    if sides is None:
-        return poses.configurations(q), poses.means(tau), None
-    approached = poses.split(sides)
-    at = poses.configurations(q)[poses.label[approached.first]]
-    return at, approached.means(tau), sides[approached.first]
+        return q, tau, sides, weight
+    split = poses if sides is None else poses.split(sides)
+    mean = split.means(weight[:, None])
+    torques = split.means(tau * weight[:, None]) / mean
+    at = poses.configurations(q)[poses.label[split.first]]
+    return at, torques, None if sides is None else sides[split.first], mean[:, 0]

@@ -100,6 +100,27 @@ def test_rows_of_one_pose_count_once_but_from_either_side():
     assert again.noise == pytest.approx(once.noise, rel=0.05)  # not smaller by the root of five
 
 
+def test_weights_count():
+    """Rows of little weight may show what they like; rows of one pose are weighed together."""
+    gravity = GravityModel(load_robot("2r"))
+    rng = np.random.default_rng(4)
+    q = rng.uniform(-2.0, 2.0, (160, 2))
+    tau = gravity.torque(q) + NOISE * rng.normal(size=q.shape)
+    tau[40:, 1] += 0.5
+    weight = np.where(np.arange(160) < 40, 1.0, 1e-6)
+    assert diagnose(q, tau).causes
+    assert diagnose(q, tau, weight=weight).causes == ()
+    # a gross error in a second row of every pose
+    rows, torques = np.repeat(q[:40], 2, axis=0), np.repeat(tau[:40], 2, axis=0)
+    torques[1::2, 1] += 3.0
+    twice = diagnose(rows, torques, weight=np.tile([1.0, 1e-6], 40))
+    assert twice.causes == ()
+    np.testing.assert_allclose(twice.noise, diagnose(q[:40], tau[:40]).noise, rtol=0.1)
+    # only how they differ counts: not the noise, nor what is seen in it
+    same, double = (diagnose(q, tau, weight=w, torque_noise=NOISE) for w in (weight, 7.0 * weight))
+    assert same.selection.fit.cost == pytest.approx(double.selection.fit.cost, rel=1e-6)
+
+
 def test_a_spring_that_stands_out_is_no_cable():
     """With the weights of a chain alone all causes of the joint that is badly fitted look alike."""
     rng = np.random.default_rng(0)
@@ -126,6 +147,8 @@ def test_too_few_poses_are_told():
         (lambda q, tau: ((q, tau[:, :1]), {}), "shape"),
         (lambda q, tau: ((q, np.where(q > 1.0, np.nan, tau)), {}), "finite"),
         (lambda q, tau: ((q, tau), {"directions": np.ones(2)}), "directions"),
+        (lambda q, tau: ((q, tau), {"weight": np.ones(2)}), "weight"),
+        (lambda q, tau: ((q, tau), {"weight": np.zeros(len(q))}), "weight"),
         (lambda q, tau: ((q, tau), {"directions": np.full(q.shape, np.nan)}), "directions"),
     ],
 )
