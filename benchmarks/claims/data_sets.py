@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.verify.testing.contaminated_arms import (
     OF_ALL_JOINTS,
+    Contaminant,
     Contamination,
-    Kind,
     Measurements,
     TrueArm,
 )
@@ -29,7 +29,7 @@ KNOWN, UNKNOWN, ANGLES, UNEQUAL = CLEAN = (
 )
 """Pools of clean arms: the noise of torques is known; is not; angles have noise too, which nobody
 tells; every joint has a noise of its own, unknown. Others are named after contaminations."""
-POOLS = (*CLEAN, *map(str, Kind))
+POOLS = (*CLEAN, *map(str, Contaminant))
 
 NOISES = (0.01, 0.05)
 """Standard deviations of torques [N m]: at the smaller one the small torques of the last joints
@@ -69,9 +69,9 @@ class Setting:
     seed: int
 
     @property
-    def kind(self) -> Kind | None:
+    def kind(self) -> Contaminant | None:
         """What is wrong with the arm, if anything is."""
-        return None if self.pool in CLEAN else Kind(self.pool)
+        return None if self.pool in CLEAN else Contaminant(self.pool)
 
     @property
     def deviations(self) -> float:
@@ -197,9 +197,9 @@ def _sized(
         if kind is None:
             return found, 0.0, 0.0
         error = found.standard_error(noise)
-        if kind is Kind.SIGN and np.isfinite(error):
+        if kind is Contaminant.SIGN and np.isfinite(error):
             return found, -found.largest, found.largest / error
-        if kind is not Kind.SIGN and setting.deviations * error <= found.largest:
+        if kind is not Contaminant.SIGN and setting.deviations * error <= found.largest:
             sign = 1.0 if kind in OF_ALL_JOINTS else float(rng.choice([-1.0, 1.0]))
             return found, sign * setting.deviations * error, setting.deviations
     raise RuntimeError(f"no joint of {setting} can have such a contamination")

@@ -9,22 +9,22 @@ import numpy as np
 
 from benchmarks.claims.data_sets import DataSet
 from isotorque.learning.learners.rigid.causes.diagnose import diagnose
-from isotorque.verify.testing.contaminated_arms import Contamination, Kind
+from isotorque.verify.testing.contaminated_arms import Contaminant, Contamination
 
 Name = tuple[str, int | None]
 
 WORDS = {
-    Kind.OFFSET: "offset",
-    Kind.GAIN: "gain",
-    Kind.SIGN: "sign",
-    Kind.SPRING: "spring",
-    Kind.CABLE: "cable",
-    Kind.FRICTION: "friction",
-    Kind.ONE_SIDED: "friction",
-    Kind.COMPLIANCE: "compliance",
-    Kind.SCALE: "scale",
-    Kind.PAYLOAD: "payload",
-    Kind.AMPERES: "gain",
+    Contaminant.OFFSET: "offset",
+    Contaminant.GAIN: "gain",
+    Contaminant.SIGN: "sign",
+    Contaminant.SPRING: "spring",
+    Contaminant.CABLE: "cable",
+    Contaminant.FRICTION: "friction",
+    Contaminant.ONE_SIDED: "friction",
+    Contaminant.COMPLIANCE: "compliance",
+    Contaminant.SCALE: "scale",
+    Contaminant.PAYLOAD: "payload",
+    Contaminant.AMPERES: "gain",
 }
 """What a diagnosis calls a kind; others have no name."""
 ALIKE = 1.0
@@ -87,7 +87,7 @@ def judged_naming(data: DataSet) -> Naming:
     n = recorded.q.shape[1]
     parts = (
         tuple(("gain", joint) for joint in range(n))
-        if data.contamination.kind is Kind.AMPERES
+        if data.contamination.kind is Contaminant.AMPERES
         else ()
     )
     return Naming(named, right_names(data), parts, seconds)
@@ -106,9 +106,9 @@ def right_names(data: DataSet) -> tuple[Name, ...]:
     if found.kind not in WORDS:
         return ()
     names: list[Name] = [(WORDS[found.kind], found.joint)]
-    if found.kind in (Kind.OFFSET, Kind.ONE_SIDED) and not found.recorded_directions:
+    if found.kind in (Contaminant.OFFSET, Contaminant.ONE_SIDED) and not found.recorded_directions:
         names = [("offset", found.joint), ("friction", found.joint)]
-    if found.kind in (Kind.GAIN, Kind.SIGN, Kind.AMPERES):
+    if found.kind in (Contaminant.GAIN, Contaminant.SIGN, Contaminant.AMPERES):
         names += _other_gains(data)
     return tuple(names)
 
@@ -116,7 +116,7 @@ def right_names(data: DataSet) -> tuple[Name, ...]:
 def _other_gains(data: DataSet) -> list[Name]:
     """Gains of single joints that differ from a gain too little to be seen."""
     found = data.contamination
-    kind = Kind.GAIN if found.kind is Kind.AMPERES else found.kind
+    kind = Contaminant.GAIN if found.kind is Contaminant.AMPERES else found.kind
     effect = found.effect(data.noise)
     others: list[Name] = []
     for joint in range(found.arm.n):
@@ -128,5 +128,5 @@ def _other_gains(data: DataSet) -> list[Name]:
             continue
         rest = effect - other * (other @ effect) / size**2
         if abs(data.size) * np.linalg.norm(rest) < ALIKE:
-            others.append((WORDS[Kind(str(kind))], joint))
+            others.append((WORDS[Contaminant(str(kind))], joint))
     return others

@@ -26,7 +26,7 @@ from isotorque.learning.learners.memory.dictionary_learner import DictionaryLear
 from isotorque.learning.learners.network.feed_forward_network import FeedForwardNetwork
 from isotorque.learning.learners.rigid.equivariant_trigonometric import EquivariantTrigonometric
 from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
-from isotorque.learning.learners.rigid.fitting.joint_columns import Shape
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
@@ -190,7 +190,7 @@ def _recursion(chain: ChainParameters) -> ChainRecursion:
         form.twists,
         form.levers,
         chain.gains,
-        chain.coefficient(Shape.OFFSET),
+        chain.coefficient(ColumnShape.OFFSET),
     )
 
 
@@ -199,7 +199,7 @@ def _rigid_chain_process(learner: RigidChainProcess) -> ChainWithKernels:
     chains = [model.chain for model in models]
     springs, sines, cosines = (
         np.mean([chain.coefficient(shape) for chain in chains], axis=0)
-        for shape in (Shape.SPRING, Shape.SINE, Shape.COSINE)
+        for shape in (ColumnShape.SPRING, ColumnShape.SINE, ColumnShape.COSINE)
     )
     tables = [model.kernel_tables() for model in models if model.processes]
     q = models[0].processes[0].q if tables else np.zeros((0, chains[0].n))

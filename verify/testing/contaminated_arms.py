@@ -36,7 +36,7 @@ effects are smaller than others' by this have none."""
 ITERATIONS = 60
 
 
-class Kind(StrEnum):
+class Contaminant(StrEnum):
     """What is wrong with an arm; the unit of its size."""
 
     OFFSET = "offset"
@@ -67,8 +67,8 @@ class Kind(StrEnum):
     """Every joint has a gain of its own, log-normal. [standard deviation of its logarithm]"""
 
 
-OF_ALL_JOINTS = (Kind.PAYLOAD, Kind.OUTLIERS, Kind.AMPERES)
-OF_TORQUE = (Kind.GAIN, Kind.SIGN, Kind.COMPLIANCE)
+OF_ALL_JOINTS = (Contaminant.PAYLOAD, Contaminant.OUTLIERS, Contaminant.AMPERES)
+OF_TORQUE = (Contaminant.GAIN, Contaminant.SIGN, Contaminant.COMPLIANCE)
 """Kinds that a joint without torque cannot have."""
 FLIPPED = -2.0
 
@@ -149,7 +149,7 @@ class Contamination:
     Attributes
     ----------
     arm : TrueArm
-    kind : Kind or None
+    kind : Contaminant or None
         None: nothing is.
     joint : int or None
         Which joint, from 0; None where it is all of them.
@@ -172,7 +172,7 @@ class Contamination:
     >>> from isotorque.symbolic.robots.load_robot import load_robot
     >>> rng = np.random.default_rng(0)
     >>> arm, q = TrueArm.of(load_robot("2r")), rng.uniform(-3, 3, (50, 2))
-    >>> offset = Contamination.drawn(arm, Kind.OFFSET, q, rng, joint=1)
+    >>> offset = Contamination.drawn(arm, Contaminant.OFFSET, q, rng, joint=1)
     >>> size = 5 * offset.standard_error(0.05)
     >>> print(round(size, 3))
     0.036
@@ -182,7 +182,7 @@ class Contamination:
     """
 
     arm: TrueArm
-    kind: Kind | None
+    kind: Contaminant | None
     joint: int | None
     q: Array
     directions: Array
@@ -194,7 +194,7 @@ class Contamination:
     def drawn(
         cls,
         arm: TrueArm,
-        kind: Kind | None,
+        kind: Contaminant | None,
         q: ArrayLike,
         rng: np.random.Generator,
         *,
@@ -226,16 +226,20 @@ class Contamination:
             joint = None
         elif joint is None:
             raise InputError("contamination", "joint", joint, f"a joint for kind {kind}")
-        if kind in (Kind.FRICTION, Kind.HIDDEN):
+        if kind in (Contaminant.FRICTION, Contaminant.HIDDEN):
             pattern[:, joint] = directions[:, joint]
-        if kind is Kind.ONE_SIDED:
+        if kind is Contaminant.ONE_SIDED:
             directions[:] = 1.0
-        if kind is Kind.OUTLIERS:
+        if kind is Contaminant.OUTLIERS:
             wrong = rng.random(len(points)) < OUTLIERS
             wrong[rng.integers(len(points))] = True
             pattern[wrong] = rng.normal(size=(int(wrong.sum()), arm.n))
-        if kind in (Kind.FRICTION, Kind.HIDDEN, Kind.ONE_SIDED):
-            recorded_directions = kind is Kind.FRICTION
+        if kind in (
+            Contaminant.FRICTION,
+            Contaminant.HIDDEN,
+            Contaminant.ONE_SIDED,
+        ):
+            recorded_directions = kind is Contaminant.FRICTION
         shape = rng.normal(size=arm.n)
         return cls(arm, kind, joint, points, directions, recorded_directions, shape, pattern)
 
@@ -244,15 +248,15 @@ class Contamination:
         """Largest size that is plausible; 0 where the joint's torque is too small for any."""
         peak = float(self.arm.peak[self._joint])
         match self.kind:
-            case Kind.GAIN | Kind.AMPERES:
+            case Contaminant.GAIN | Contaminant.AMPERES:
                 return 0.5
-            case Kind.SIGN:
+            case Contaminant.SIGN:
                 return -FLIPPED
-            case Kind.SCALE:
+            case Contaminant.SCALE:
                 return 0.2
-            case Kind.COMPLIANCE:
+            case Contaminant.COMPLIANCE:
                 return 0.1 / peak if peak > ABSORBED * self.arm.peak.max() else 0.0
-            case Kind.PAYLOAD:
+            case Contaminant.PAYLOAD:
                 return 5.0
         return float(self.arm.peak.max())
 
@@ -262,7 +266,7 @@ class Contamination:
         Parameters
         ----------
         size
-            Of the contamination, see `Kind`.
+            Of the contamination, see `Contaminant`.
         late
             Whether a payload has come by then.
         """
@@ -272,23 +276,23 @@ class Contamination:
             points = np.array(q, dtype=float)
             angle = points[:, joint].copy()
             match self.kind:
-                case Kind.SCALE:
+                case Contaminant.SCALE:
                     points[:, joint] *= 1.0 + size
-                case Kind.COMPLIANCE:
+                case Contaminant.COMPLIANCE:
                     self._bend(points, angle, size)
             result = np.array(gravity(points))
             match self.kind:
-                case Kind.OFFSET | Kind.ONE_SIDED:
+                case Contaminant.OFFSET | Contaminant.ONE_SIDED:
                     result[:, joint] += size
-                case Kind.GAIN | Kind.SIGN:
+                case Contaminant.GAIN | Contaminant.SIGN:
                     result[:, joint] *= 1.0 + size
-                case Kind.SPRING:
+                case Contaminant.SPRING:
                     result[:, joint] += size * (angle - self.shape[joint])
-                case Kind.CABLE:
+                case Contaminant.CABLE:
                     result[:, joint] += size * np.sin(2.0 * angle + self.shape[joint])
-                case Kind.AMPERES:
+                case Contaminant.AMPERES:
                     result *= np.exp(size * self.shape)
-                case Kind.PAYLOAD if late:
+                case Contaminant.PAYLOAD if late:
                     result += size * (self.arm.loaded.torque(points) - result)
             return result
 
@@ -297,7 +301,7 @@ class Contamination:
     def torque(self, size: float) -> Array:
         """Torques (N, n) at the poses, without noise [N m]."""
         result = self.truth(size)(self.q) + size * self.pattern
-        if self.kind is Kind.PAYLOAD:
+        if self.kind is Contaminant.PAYLOAD:
             middle = len(self.q) // 2
             result[:middle] = self.truth(size, late=False)(self.q[:middle])
         return result
@@ -315,7 +319,7 @@ class Contamination:
         Parameters
         ----------
         size
-            Of the contamination, see `Kind`; without meaning where there is none.
+            Of the contamination, see `Contaminant`; without meaning where there is none.
         noise
             Standard deviation of torques [N m], one for all joints or one each.
         rng
@@ -324,7 +328,7 @@ class Contamination:
             Standard deviation of the measured angles [rad].
         """
         tau = self.torque(size) + np.asarray(noise) * rng.normal(size=self.q.shape)
-        times = (False, True) if self.kind is Kind.PAYLOAD else (True,)
+        times = (False, True) if self.kind is Contaminant.PAYLOAD else (True,)
         return Measurements(
             self.q + angle_noise * rng.normal(size=self.q.shape),
             tau,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.claims.data_sets import CLEAN, DATA_SETS, POOLS, ROBOTS, Setting, draw, settings
-from isotorque.verify.testing.contaminated_arms import Kind
+from isotorque.verify.testing.contaminated_arms import Contaminant
 
 WHOLE = list(settings())
 
@@ -53,11 +53,11 @@ def test_one_seed_gives_one_data_set(pool):
     one, again, other = (draw(setting(pool, seed=seed)) for seed in (1, 1, 2))
     np.testing.assert_array_equal(one.recorded.tau, again.recorded.tau)
     assert not np.array_equal(one.recorded.q, other.recorded.q)
-    assert one.contamination.kind is (None if pool in CLEAN else Kind(pool))
+    assert one.contamination.kind is (None if pool in CLEAN else Contaminant(pool))
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
-@pytest.mark.parametrize("kind", Kind)
+@pytest.mark.parametrize("kind", Contaminant)
 def test_a_size_is_so_many_least_standard_errors_and_plausible(robot, kind):
     for index in range(4):
         asked = setting(str(kind), robot=robot, index=index)
@@ -66,7 +66,7 @@ def test_a_size_is_so_many_least_standard_errors_and_plausible(robot, kind):
         error = found.standard_error(data.noise)
         assert abs(data.size) == pytest.approx(data.deviations * error)
         assert abs(data.size) <= found.largest
-        if kind is not Kind.SIGN:
+        if kind is not Contaminant.SIGN:
             assert data.deviations == asked.deviations
 
 

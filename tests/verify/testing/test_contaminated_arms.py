@@ -17,14 +17,14 @@ from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.verify.testing.contaminated_arms import (
     OF_ALL_JOINTS,
     PAYLOAD_CENTRE,
+    Contaminant,
     Contamination,
-    Kind,
     TrueArm,
 )
 
 NOISE = 0.05
 NAMES = ("2r", "3r", "ur5", "panda")
-OF_ONE_JOINT = [kind for kind in Kind if kind not in OF_ALL_JOINTS]
+OF_ONE_JOINT = [kind for kind in Contaminant if kind not in OF_ALL_JOINTS]
 FEW = settings(
     max_examples=40, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
 )
@@ -36,7 +36,7 @@ def true_arm(name: str) -> TrueArm:
 
 
 @st.composite
-def drawn(draw, kinds=tuple(Kind), names=NAMES, poses=20):
+def drawn(draw, kinds=tuple(Contaminant), names=NAMES, poses=20):
     """A contamination and a size below its largest, of either sign."""
     arm = true_arm(draw(st.sampled_from(names)))
     rng = np.random.default_rng(draw(st.integers(0, 10**6)))
@@ -56,10 +56,13 @@ def added(found: Contamination, size: float) -> np.ndarray:
 def test_one_joint_alone_measures_something_else(case):
     found, size = case
     others = np.delete(np.arange(found.arm.n), found.joint)
-    if found.kind in (Kind.COMPLIANCE, Kind.SCALE):  # angles of one joint change all torques
+    if found.kind in (
+        Contaminant.COMPLIANCE,
+        Contaminant.SCALE,
+    ):  # angles of one joint change all torques
         inside = found.q.copy()
         inside[:, found.joint] = 0.0
-        if found.kind is Kind.SCALE:
+        if found.kind is Contaminant.SCALE:
             same = replace(found, q=inside).torque(size)
             np.testing.assert_allclose(same, found.arm.gravity.torque(inside))
     else:
@@ -67,23 +70,33 @@ def test_one_joint_alone_measures_something_else(case):
 
 
 @FEW
-@given(drawn(kinds=[Kind.OFFSET, Kind.GAIN, Kind.SPRING, Kind.CABLE, Kind.ONE_SIDED]))
+@given(
+    drawn(
+        kinds=[
+            Contaminant.OFFSET,
+            Contaminant.GAIN,
+            Contaminant.SPRING,
+            Contaminant.CABLE,
+            Contaminant.ONE_SIDED,
+        ]
+    )
+)
 def test_torque_that_is_added_has_the_formula_of_its_kind(case):
     found, x = case
     j, angle = found.joint, found.q[:, found.joint]
     torque = found.arm.gravity.torque(found.q)[:, j]
     expected = {
-        Kind.OFFSET: np.full(len(angle), x),
-        Kind.ONE_SIDED: np.full(len(angle), x),
-        Kind.GAIN: x * torque,
-        Kind.SPRING: x * (angle - found.shape[j]),
-        Kind.CABLE: x * np.sin(2 * angle + found.shape[j]),
+        Contaminant.OFFSET: np.full(len(angle), x),
+        Contaminant.ONE_SIDED: np.full(len(angle), x),
+        Contaminant.GAIN: x * torque,
+        Contaminant.SPRING: x * (angle - found.shape[j]),
+        Contaminant.CABLE: x * np.sin(2 * angle + found.shape[j]),
     }[found.kind]
     np.testing.assert_allclose(added(found, x)[:, j], expected, atol=1e-11)
 
 
 @FEW
-@given(drawn(kinds=[Kind.SIGN]))
+@given(drawn(kinds=[Contaminant.SIGN]))
 def test_a_sign_is_a_gain_of_minus_two(case):
     found, _ = case
     torque = found.arm.gravity.torque(found.q)
@@ -92,14 +105,14 @@ def test_a_sign_is_a_gain_of_minus_two(case):
 
 
 @FEW
-@given(drawn(kinds=[Kind.COMPLIANCE, Kind.SCALE]))
+@given(drawn(kinds=[Contaminant.COMPLIANCE, Contaminant.SCALE]))
 def test_angles_are_measured_before_the_gear(case):
     """From where the links are to what is measured: the other way round than the package goes."""
     found, x = case
     link = found.q
     torque = found.arm.gravity.torque(link)
     measured = link.copy()
-    if found.kind is Kind.SCALE:
+    if found.kind is Contaminant.SCALE:
         measured[:, found.joint] /= 1.0 + x
     else:
         x *= 0.3  # a spring so soft that the arm has one place to rest for every motor angle
@@ -108,14 +121,14 @@ def test_angles_are_measured_before_the_gear(case):
 
 
 @FEW
-@given(drawn(kinds=[Kind.FRICTION, Kind.HIDDEN]))
+@given(drawn(kinds=[Contaminant.FRICTION, Contaminant.HIDDEN]))
 def test_friction_has_the_sign_of_the_last_motion(case):
     found, x = case
     directions = found.directions[:, found.joint]
     assert set(directions) == {-1.0, 1.0}
     np.testing.assert_allclose(added(found, x)[:, found.joint], x * directions, atol=1e-11)
     recorded = found.measured(x, 0.0, np.random.default_rng(0)).directions
-    if found.kind is Kind.FRICTION:
+    if found.kind is Contaminant.FRICTION:
         np.testing.assert_array_equal(recorded, found.directions)
     else:
         assert recorded is None
@@ -124,7 +137,7 @@ def test_friction_has_the_sign_of_the_last_motion(case):
 
 
 @FEW
-@given(drawn(kinds=[Kind.ONE_SIDED]))
+@given(drawn(kinds=[Contaminant.ONE_SIDED]))
 def test_friction_from_one_side_belongs_to_the_arm_as_measured(case):
     found, x = case
     recorded = found.measured(x, 0.0, np.random.default_rng(0))
@@ -134,7 +147,7 @@ def test_friction_from_one_side_belongs_to_the_arm_as_measured(case):
 
 
 @FEW
-@given(drawn(kinds=[Kind.AMPERES]))
+@given(drawn(kinds=[Contaminant.AMPERES]))
 def test_amperes_are_a_gain_for_every_joint(case):
     found, x = case
     torque = found.arm.gravity.torque(found.q)
@@ -153,7 +166,7 @@ def test_a_payload_comes_in_the_middle():
     model.appendBodyToJoint(model.njoints - 1, body, pin.SE3.Identity())
     data = model.createData()
     heavy = np.array([pin.computeGeneralizedGravity(model, data, x).copy() for x in q])
-    found = Contamination.drawn(arm, Kind.PAYLOAD, q, rng)
+    found = Contamination.drawn(arm, Contaminant.PAYLOAD, q, rng)
     recorded = found.measured(0.7, 0.0, rng)
     expected = np.concatenate([arm.gravity.torque(q[:4]), heavy[4:]])
     np.testing.assert_allclose(recorded.tau, expected, atol=1e-9)
@@ -166,7 +179,7 @@ def test_a_payload_comes_in_the_middle():
 def test_outliers_are_one_pose_in_twenty_and_at_least_one(poses):
     arm, rng = true_arm("2r"), np.random.default_rng(4)
     q = rng.uniform(-np.pi, np.pi, (poses, 2))
-    found = Contamination.drawn(arm, Kind.OUTLIERS, q, rng)
+    found = Contamination.drawn(arm, Contaminant.OUTLIERS, q, rng)
     errors = added(found, 3.0)
     wrong = np.any(errors != 0.0, axis=1)
     assert 1 <= wrong.sum() <= max(1, 0.08 * poses)
@@ -192,7 +205,9 @@ def test_a_clean_arm_measures_gravity_and_noise():
 
 def test_a_kind_of_one_joint_needs_one():
     with pytest.raises(InputError, match="joint is None"):
-        Contamination.drawn(true_arm("2r"), Kind.GAIN, np.zeros((3, 2)), np.random.default_rng(0))
+        Contamination.drawn(
+            true_arm("2r"), Contaminant.GAIN, np.zeros((3, 2)), np.random.default_rng(0)
+        )
 
 
 # -- standard errors ----------------------------------------------------------------------------
@@ -205,7 +220,7 @@ def planar(x, q):
     return np.stack([elbow + x[2] * np.cos(q[:, 0]) + x[3] * np.sin(q[:, 0]), elbow], axis=1)
 
 
-@pytest.mark.parametrize("kind", [Kind.OFFSET, Kind.GAIN])
+@pytest.mark.parametrize("kind", [Contaminant.OFFSET, Contaminant.GAIN])
 def test_least_standard_errors_are_those_of_estimates(kind):
     """Monte Carlo: fits of arm and size together to many noisy recordings."""
     arm, rng, runs = true_arm("2r"), np.random.default_rng(6), 400
@@ -219,7 +234,7 @@ def test_least_standard_errors_are_those_of_estimates(kind):
 
     def residual(x, tau):
         torque = planar(x, q)
-        torque[:, 0] += x[4] if kind is Kind.OFFSET else x[4] * torque[:, 0]
+        torque[:, 0] += x[4] if kind is Contaminant.OFFSET else x[4] * torque[:, 0]
         return (torque - tau).ravel()
 
     estimates = [
@@ -246,10 +261,10 @@ def test_a_standard_error_grows_with_noise(case):
 @pytest.mark.parametrize(
     ("name", "kind", "joint"),
     [
-        ("ur5", Kind.GAIN, 5),  # no torque
-        ("ur5", Kind.COMPLIANCE, 0),
-        ("ur5", Kind.SCALE, 0),  # a vertical axis
-        ("panda", Kind.SIGN, 0),
+        ("ur5", Contaminant.GAIN, 5),  # no torque
+        ("ur5", Contaminant.COMPLIANCE, 0),
+        ("ur5", Contaminant.SCALE, 0),  # a vertical axis
+        ("panda", Contaminant.SIGN, 0),
     ],
 )
 def test_what_nothing_can_show_has_no_standard_error(name, kind, joint):
@@ -262,7 +277,7 @@ def test_a_common_gain_is_a_heavier_arm():
     """Levers take it up, so that amperes of equal size on all joints are nothing."""
     arm, rng = true_arm("3r"), np.random.default_rng(8)
     q = rng.uniform(-np.pi, np.pi, (30, 3))
-    found = Contamination.drawn(arm, Kind.AMPERES, q, rng)
+    found = Contamination.drawn(arm, Contaminant.AMPERES, q, rng)
     assert np.isfinite(found.standard_error(NOISE))
     assert replace(found, shape=np.ones(3)).standard_error(NOISE) == np.inf
 
@@ -270,6 +285,8 @@ def test_a_common_gain_is_a_heavier_arm():
 def test_two_coupled_joints_have_one_ratio_of_gains():
     arm, rng = true_arm("2r"), np.random.default_rng(9)
     q = rng.uniform(-np.pi, np.pi, (30, 2))
-    effects = [Contamination.drawn(arm, Kind.GAIN, q, rng, joint=j).effect(NOISE) for j in range(2)]
+    effects = [
+        Contamination.drawn(arm, Contaminant.GAIN, q, rng, joint=j).effect(NOISE) for j in range(2)
+    ]
     np.testing.assert_allclose(effects[0], -effects[1], rtol=1e-4, atol=1e-6)
     assert np.linalg.norm(effects[0]) > 1.0

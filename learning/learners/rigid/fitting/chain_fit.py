@@ -13,7 +13,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainPara
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
-from isotorque.learning.learners.rigid.fitting.joint_columns import Shape
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape
 from isotorque.learning.learners.rigid.planning.information import Information
 
 Array = NDArray[np.float64]
@@ -94,7 +94,7 @@ class ChainFit:
         rows = np.eye(count)[count - len(columns) :]
         spread = self.spread * np.sqrt(self.information.variance(rows))
         for column, error in zip(columns, spread, strict=True):
-            if column.shape is Shape.OFFSET:
+            if column.shape is ColumnShape.OFFSET:
                 result[column.joint] = error
         return result
 

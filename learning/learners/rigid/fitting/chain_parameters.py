@@ -10,7 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from isotorque.learning.learners.rigid.fitting.compiled_torque import chain_jacobian, chain_torques
-from isotorque.learning.learners.rigid.fitting.joint_columns import JointColumn, Shape, features
+from isotorque.learning.learners.rigid.fitting.joint_columns import (
+    ColumnShape,
+    JointColumn,
+    features,
+)
 from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
@@ -105,9 +109,9 @@ class ChainParameters:
     @property
     def offsets(self) -> Array:
         """Constant part of the measured torque of every joint, (n,) [N m]."""
-        return self.coefficient(Shape.OFFSET)
+        return self.coefficient(ColumnShape.OFFSET)
 
-    def coefficient(self, shape: Shape) -> Array:
+    def coefficient(self, shape: ColumnShape) -> Array:
         """What multiplies a shape in the measured torque of every joint, (n,); 0 without."""
         result = np.zeros(self.n)
         for column, x in zip(self.columns, self.coefficients, strict=True):
@@ -178,14 +182,16 @@ class ChainParameters:
             "levers": self.levers,
             "gains": self.gains,
             "column_joints": np.array([c.joint for c in self.columns], dtype=np.int64),
-            "column_shapes": np.array([list(Shape).index(c.shape) for c in self.columns], int),
+            "column_shapes": np.array(
+                [list(ColumnShape).index(c.shape) for c in self.columns], int
+            ),
             "coefficients": self.coefficients,
         }
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any]) -> ChainParameters:
         """Inverse of `to_arrays`."""
-        shapes = list(Shape)
+        shapes = list(ColumnShape)
         columns = [
             JointColumn(int(j), shapes[int(s)])
             for j, s in zip(arrays["column_joints"], arrays["column_shapes"], strict=True)

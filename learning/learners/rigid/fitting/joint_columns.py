@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-class Shape(StrEnum):
+class ColumnShape(StrEnum):
     """Dependence of a column's torque on the angle of its joint."""
 
     OFFSET = "offset"
@@ -24,18 +24,18 @@ class Shape(StrEnum):
     """Sine and cosine of the angle. The unknowns are in N m."""
 
 
-FEATURES: dict[Shape, Callable[[Array], Array]] = {
-    Shape.OFFSET: np.ones_like,
-    Shape.SPRING: lambda angle: angle,
-    Shape.SINE: np.sin,
-    Shape.COSINE: np.cos,
+FEATURES: dict[ColumnShape, Callable[[Array], Array]] = {
+    ColumnShape.OFFSET: np.ones_like,
+    ColumnShape.SPRING: lambda angle: angle,
+    ColumnShape.SINE: np.sin,
+    ColumnShape.COSINE: np.cos,
 }
 
-SLOPES: dict[Shape, Callable[[Array], Array]] = {
-    Shape.OFFSET: np.zeros_like,
-    Shape.SPRING: np.ones_like,
-    Shape.SINE: np.cos,
-    Shape.COSINE: lambda angle: -np.sin(angle),
+SLOPES: dict[ColumnShape, Callable[[Array], Array]] = {
+    ColumnShape.OFFSET: np.zeros_like,
+    ColumnShape.SPRING: np.ones_like,
+    ColumnShape.SINE: np.cos,
+    ColumnShape.COSINE: lambda angle: -np.sin(angle),
 }
 """Their derivatives by the angle."""
 
@@ -48,12 +48,12 @@ class JointColumn:
     ----------
     joint : int
         j, from 0.
-    shape : Shape
+    shape : ColumnShape
         f.
     """
 
     joint: int
-    shape: Shape
+    shape: ColumnShape
 
     def feature(self, q: Array) -> Array:
         """F of the angles in configurations (m, n) [rad], shape (m,)."""
@@ -66,10 +66,10 @@ class JointColumn:
 
 def offset_columns(joints: int) -> tuple[JointColumn, ...]:
     """An unknown constant offset at every joint."""
-    return columns_of(joints, Shape.OFFSET)
+    return columns_of(joints, ColumnShape.OFFSET)
 
 
-def columns_of(joints: int, *shapes: Shape) -> tuple[JointColumn, ...]:
+def columns_of(joints: int, *shapes: ColumnShape) -> tuple[JointColumn, ...]:
     """A column of each of these shapes at every joint."""
     return tuple(JointColumn(j, shape) for shape in shapes for j in range(joints))
 

@@ -20,7 +20,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus, NotAccepted
-from isotorque.learning.learners.rigid.fitting.joint_columns import Shape, columns_of
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape, columns_of
 from isotorque.learning.learners.rigid.fitting.start_search import StartSearch
 from isotorque.learning.learners.rigid.planning.poses_needed import most_parameters
 from isotorque.learning.learners.rigid.process.correlated_fit import (
@@ -47,7 +47,11 @@ from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
 
-VARIANTS = ((Shape.OFFSET,), (Shape.OFFSET, Shape.SPRING), (Shape.OFFSET, Shape.SINE, Shape.COSINE))
+VARIANTS = (
+    (ColumnShape.OFFSET,),
+    (ColumnShape.OFFSET, ColumnShape.SPRING),
+    (ColumnShape.OFFSET, ColumnShape.SINE, ColumnShape.COSINE),
+)
 """What every joint has beside the chain, in the models whose mean is predicted."""
 ROUNDS = 3
 """Processes on what the chain leaves, then the chain refitted with their covariance, so often."""
@@ -335,7 +339,7 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
         return np.asarray(np.mean([model.torque(q) for model in models], axis=0))
 
     def _fitted(
-        self, shapes: Sequence[Shape], rigid: ChainParameters, rng: np.random.Generator
+        self, shapes: Sequence[ColumnShape], rigid: ChainParameters, rng: np.random.Generator
     ) -> ChainWithProcesses:
         """Fit one of the models."""
         q, torque, n = self._q, self._torque, self._q.shape[1]

@@ -12,7 +12,7 @@ from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.symbolic.symmetries.primary_symmetries import primary_symmetries
-from isotorque.verify.testing.contaminated_arms import Contamination, Kind, TrueArm
+from isotorque.verify.testing.contaminated_arms import Contaminant, Contamination, TrueArm
 
 
 def recording(name, count, noise=0.0, seed=0):
@@ -173,7 +173,7 @@ def test_bounds_hold_for_torques_that_hide_in_the_noise(kind, size):
     assert claims > 5
 
 
-@pytest.mark.parametrize("kind", [Kind.SCALE, Kind.COMPLIANCE])
+@pytest.mark.parametrize("kind", [Contaminant.SCALE, Contaminant.COMPLIANCE])
 @pytest.mark.parametrize("name", ["2r", "3r"])
 def test_bounds_hold_for_errors_of_angles_that_hide_in_the_noise(kind, name):
     """Angles that are read a little wrong: the torque at the angles as read keeps the bounds."""

@@ -12,7 +12,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
     torques_of,
 )
 from isotorque.learning.learners.rigid.fitting.compiled_fit import turn
-from isotorque.learning.learners.rigid.fitting.joint_columns import JointColumn, Shape
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape, JointColumn
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from isotorque.verify.testing.strategies import kinematic_trees
@@ -28,7 +28,7 @@ def chains(draw, max_joints=5):
     parents = [draw(st.integers(-1, j - 1)) for j in range(n)] if draw(st.booleans()) else None
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     chain = random_chain(rng, n, draw(st.sampled_from(KINDS)), parents)
-    columns = (JointColumn(0, Shape.OFFSET), JointColumn(n - 1, Shape.SPRING))
+    columns = (JointColumn(0, ColumnShape.OFFSET), JointColumn(n - 1, ColumnShape.SPRING))
     return replace(
         chain, gains=rng.uniform(0.5, 2, n), columns=columns, coefficients=rng.normal(size=2)
     ), rng
@@ -128,7 +128,7 @@ def test_arrays_make_the_same_chain():
     rng = np.random.default_rng(0)
     chain = replace(
         random_chain(rng, 3),
-        columns=(JointColumn(1, Shape.SPRING),),
+        columns=(JointColumn(1, ColumnShape.SPRING),),
         coefficients=np.array([0.3]),
     )
     back = ChainParameters.from_arrays(chain.to_arrays())
