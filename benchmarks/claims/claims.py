@@ -92,9 +92,11 @@ def judged_claims(robot: str, data: DataSet) -> Claims:
 def excess(relation: SymmetryRelation, data: DataSet, q: Array) -> float:
     """Largest error of a relation of the measured torque, in units of its bound.
 
-    Its correction, if any, has constants alone: angles may be wrapped.
+    Angles are wrapped unless its correction has springs, to which turns make a difference.
     """
-    image = wrap(relation.configuration(q))
+    image = relation.configuration(q)
+    if relation.correction is None or not relation.correction.rate.any():
+        image = wrap(image)
     allowed = relation.bound + FLOOR * data.contamination.arm.peak.max()
     errors = [
         np.abs(torque(image) - relation.torque(torque(q), q)).max(axis=0)

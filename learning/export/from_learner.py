@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -178,8 +179,11 @@ def _recursive_least_squares(learner: RecursiveLeastSquares) -> LocalFunctions:
     )
 
 
-def _rigid_chain(learner: RigidChain) -> ChainRecursion:
-    return _recursion(learner.chain_)
+def _rigid_chain(learner: RigidChain) -> ChainRecursion | ChainWithKernels:
+    chain = learner.chain_
+    if not chain.coefficient(ColumnShape.SPRING).any():
+        return _recursion(chain)
+    return _with_kernels([chain], np.zeros((0, chain.n)), [])
 
 
 def _recursion(chain: ChainParameters) -> ChainRecursion:
@@ -196,13 +200,19 @@ def _recursion(chain: ChainParameters) -> ChainRecursion:
 
 def _rigid_chain_process(learner: RigidChainProcess) -> ChainWithKernels:
     models = learner.accepted_models
+    tables = [model.kernel_tables() for model in models if model.processes]
     chains = [model.chain for model in models]
+    q = models[0].processes[0].q if tables else np.zeros((0, chains[0].n))
+    return _with_kernels(chains, q, tables)
+
+
+def _with_kernels(
+    chains: Sequence[ChainParameters], q: Array, tables: Sequence[tuple[Array, ...]]
+) -> ChainWithKernels:
     springs, sines, cosines = (
         np.mean([chain.coefficient(shape) for chain in chains], axis=0)
         for shape in (ColumnShape.SPRING, ColumnShape.SINE, ColumnShape.COSINE)
     )
-    tables = [model.kernel_tables() for model in models if model.processes]
-    q = models[0].processes[0].q if tables else np.zeros((0, chains[0].n))
     n = chains[0].n
     empty = (np.zeros((0, n)), np.zeros((0, n, n)), np.zeros((0, 0, n)), np.zeros((0, 0, n)))
     stacked = [np.stack(part) for part in zip(*tables, strict=True)] if tables else empty

@@ -32,7 +32,8 @@ KINDS, WIDEST = 2, 2
 """Alternatives, and terms per joint of the widest one."""
 NOISY = 0.1
 """Torque sensors leave less than this share of the torques (RMS) unexplained, unless said."""
-GAINS = {Kind.GAIN, Kind.SIGN}
+OF_A_CHAIN = {Kind.GAIN, Kind.SIGN, Kind.SPRING}
+"""Gains break no relation, and springs can be taken off."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +78,8 @@ class LackOfFit:
         What there is, with its size; empty where there is nothing.
     left : str
         What is left, if that is more than sensors leave: further samples will not help.
+    rates : (n,) array or None
+        Spring rates that a chain holds [N m/rad].
     """
 
     causes: tuple[Cause, ...]
@@ -87,19 +90,20 @@ class LackOfFit:
     failed: bool
     said: str
     left: str = ""
+    rates: Array | None = None
 
     @property
     def correction(self) -> Correction:
-        """Constants that may be taken off the measured torques: those that were seen."""
+        """What may be taken off the measured torques: constants that were seen, and springs."""
         constant = np.zeros(len(self.offsets))
         constant[self.offset_joints] = self.offsets[self.offset_joints]
-        return Correction(constant)
+        return Correction(constant, self.rates)
 
     @property
-    def gains_alone(self) -> bool:
-        """Whether gains are all that the form has no term for: they break no relation."""
+    def of_a_chain(self) -> bool:
+        """Whether all that the form has no term for is what a chain can hold: gains, springs."""
         kinds = {cause.kind for cause in self.causes}
-        return self.failed and bool(kinds & GAINS) and kinds <= GAINS | {Kind.OFFSET}
+        return self.failed and bool(kinds & OF_A_CHAIN) and kinds <= OF_A_CHAIN | {Kind.OFFSET}
 
 
 def lack_of_fit(

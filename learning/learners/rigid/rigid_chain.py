@@ -27,7 +27,7 @@ from isotorque.learning.learners.rigid.fitting.gains import (
     gain_groups,
     with_fixed_scales,
 )
-from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape, JointColumn
 from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErrors
 from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain, beside_chain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import (
@@ -50,8 +50,10 @@ from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 
-HELD = {Kind.OFFSET, Kind.GAIN, Kind.SIGN}
+HELD = {Kind.OFFSET, Kind.GAIN, Kind.SIGN, Kind.SPRING}
 """Causes that a chain can hold itself."""
+TERMS = {ColumnShape.OFFSET: Shape.CONSTANT, ColumnShape.SPRING: Shape.ANGLE}
+"""Terms of causes that columns of a chain are."""
 ROOM_FOR = {Kind.SPRING, Kind.CABLE}
 """Others that bounds of its relations leave room for."""
 STARTS_NEAR = 20
@@ -82,6 +84,9 @@ class RigidChain(TorqueRegressor, SavedLearner):
         common factor of all joints that are coupled with it.
     unknown_offsets : bool or sequence of bool
         Whether torque sensors have an unknown constant error: all, or one entry per joint.
+    unknown_springs : bool or sequence of bool
+        Whether joints have a spring of unknown rate: all, or one entry per joint. Where it is at
+        rest is an unknown constant.
     max_starts : int
         Random starts of the search at most.
     window : int
@@ -141,6 +146,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         unknown_gains: bool = False,
         known_gains: Sequence[float | None] | None = None,
         unknown_offsets: bool | Sequence[bool] = False,
+        unknown_springs: bool | Sequence[bool] = False,
         max_starts: int = 300,
         window: int = 1000,
         random_state: int = 0,
@@ -151,6 +157,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         self.unknown_gains = unknown_gains
         self.known_gains = known_gains
         self.unknown_offsets = unknown_offsets
+        self.unknown_springs = unknown_springs
         self.max_starts = max_starts
         self.window = window
         self.random_state = random_state
@@ -317,14 +324,14 @@ class RigidChain(TorqueRegressor, SavedLearner):
         return found.causes if self.verdict_.accepted or found.clear else ()
 
     def with_causes(self) -> RigidChain | None:
-        """The same samples with the constants and gains that they show beside the chain.
+        """The same samples with the constants, springs and gains that they show beside the chain.
 
         Returns
         -------
         RigidChain or None
-            None where nothing is shown (`shown_causes`), a cause could be anything but a constant
-            or a gain, or no chain is accepted with them. ``causes_`` of the result are those of
-            this one.
+            None where nothing is shown (`shown_causes`), a cause could be anything but a constant,
+            a spring or a gain, or no chain is accepted with them. ``causes_`` of the result are
+            those of this one.
         """
         causes = self.shown_causes()
         kinds = {cause.kind for cause in causes}
@@ -332,13 +339,22 @@ class RigidChain(TorqueRegressor, SavedLearner):
         if not kinds or not kinds <= HELD or not rivals <= HELD | ROOM_FOR:
             return None
         model, samples = self._model, self.fit_.samples
-        offsets, free = {column.joint for column in model.columns}, model.free_gains.copy()
+        free = model.free_gains.copy()
+        offsets, springs = (
+            {column.joint for column in model.columns if column.shape is shape}
+            for shape in (ColumnShape.OFFSET, ColumnShape.SPRING)
+        )
         for cause in causes:
-            if cause.kind is Kind.OFFSET:
-                offsets.update(cause.joints(model.n))
-            else:
-                free[cause.joints(model.n)] = True
-        again = clone(self).set_params(unknown_offsets=[j in offsets for j in range(model.n)])
+            joints = cause.joints(model.n)
+            if cause.kind in (Kind.GAIN, Kind.SIGN):
+                free[joints] = True
+                continue
+            offsets.update(joints)
+            springs.update(joints if cause.kind is Kind.SPRING else ())
+        again = clone(self).set_params(
+            unknown_offsets=[j in offsets for j in range(model.n)],
+            unknown_springs=[j in springs for j in range(model.n)],
+        )
         if free.any():
             known = [None if f else float(g) for f, g in zip(free, model.gains, strict=True)]
             again.set_params(unknown_gains=True, known_gains=known)
@@ -406,7 +422,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         samples = fit.samples
         if fit.verdict is FitStatus.ROUNDING:
             return Diagnosis((), True, False, samples.torque_noise, None)
-        offsets = [Term(Shape.CONSTANT, column.joint) for column in fit.model.columns]
+        offsets = [Term(TERMS[column.shape], column.joint) for column in fit.model.columns]
         gains = [Term(Shape.GAIN, int(j)) for j in np.flatnonzero(fit.model.free_gains)]
         return diagnose(
             samples.q,
@@ -534,17 +550,20 @@ class RigidChain(TorqueRegressor, SavedLearner):
                 k is None or (np.isfinite(k) and k != 0) for k in known
             )
             require(self, "known_gains", good, f"{joints} numbers other than 0, or None")
-        offsets = self.unknown_offsets
-        if isinstance(offsets, bool | np.bool_):
-            offsets = [bool(offsets)] * joints
-        require(
-            self, "unknown_offsets", len(offsets) == joints, f"True, False, or {joints} of them"
-        )
+        columns: list[JointColumn] = []
+        for name, shape in (
+            ("unknown_offsets", ColumnShape.OFFSET),
+            ("unknown_springs", ColumnShape.SPRING),
+        ):
+            stated = getattr(self, name)
+            wanted = [stated] * joints if isinstance(stated, bool | np.bool_) else list(stated)
+            require(self, name, len(wanted) == joints, f"True, False, or {joints} of them")
+            columns += [JointColumn(j, shape) for j in range(joints) if wanted[j]]
         self._model = ChainModel(
             parents,
             np.array([1.0 if k is None else k for k in known], dtype=float),
             np.array([self.unknown_gains and k is None for k in known], dtype=bool),
-            tuple(c for c, wanted in zip(offset_columns(joints), offsets, strict=True) if wanted),
+            tuple(columns),
         )
         self._flat = flat
         self.n_outputs_ = outputs

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape
 from isotorque.learning.learners.rigid.planning.poses_needed import fewest_poses
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.examined_fit import LARGEST_ERROR, could_be_wrong
@@ -24,7 +25,9 @@ from isotorque.learning.statistics.causes.cause import Cause
 from isotorque.learning.statistics.causes.cause_words import causes_in_words
 from isotorque.learning.statistics.poses import by_pose
 from isotorque.learning.statistics.static_samples import static_samples
+from isotorque.symbolic.groups.correction import Correction
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
 
 Array = NDArray[np.float64]
 
@@ -176,16 +179,9 @@ def relations_of_chain(learner: RigidChain, *, any_chain: bool = True) -> Learne
     if excess > 1.0:
         missing = could_be_wrong(len(samples.q), excess)
         return nothing_learned(n, missing, METHOD)
-    flipped = np.zeros(0, dtype=np.intp) if lack is None else lack.offset_joints
-    corrected = (
-        ()
-        if lack is None
-        else tuple(
-            relation.of_measured(lack.correction)
-            for relation in found.group
-            if (relation.Y[flipped] < 0.0).any()
-        )
-    )
+    correction = None if lack is None else lack.correction
+    plain = [r for r in found.group if correction is None or _needs_none(r, correction)]
+    corrected = tuple(r.of_measured(correction) for r in found.group if r not in plain)
     relations = tuple(
         LearnedRelation(
             relation,
@@ -195,8 +191,7 @@ def relations_of_chain(learner: RigidChain, *, any_chain: bool = True) -> Learne
             found.snapped.p_value,
             snapped=bool(found.snapped.hypotheses),
         )
-        for relation in found.group
-        if (relation.Y[flipped] > 0.0).all()
+        for relation in plain
     )
     return LearnedSymmetries(
         SymmetryGroup([entry.relation for entry in relations]),
@@ -207,6 +202,15 @@ def relations_of_chain(learner: RigidChain, *, any_chain: bool = True) -> Learne
         corrected=corrected,
         chain=learner,
     )
+
+
+def _needs_none(relation: SymmetryRelation, correction: Correction) -> bool:
+    """Whether a relation of gravity holds of the measured torque as it is: c(q') = Y c(q)."""
+    kept = relation.Y > 0.0
+    turned = (relation.Y[:, None] * np.eye(relation.n) == relation.A).all(axis=1)
+    turned &= relation.unwrapped_d == 0.0
+    springs = correction.rate != 0.0
+    return bool(kept[correction.constant != 0.0].all() and turned[springs].all())
 
 
 def explained(
@@ -224,7 +228,7 @@ def explained(
     Returns
     -------
     learner : RigidChain
-        With the constants and gains that the samples show.
+        With the constants, springs and gains that the samples show.
     missing : str
         What stands in the way; empty where nothing does.
     lack : LackOfFit or None
@@ -262,7 +266,8 @@ def explained(
 def _beside(chain: RigidChain, causes: tuple[Cause, ...], *, failed: bool) -> LackOfFit:
     """What the samples show beside a chain: in it, or nothing that it has a term for."""
     errors = np.zeros(chain.fit_.model.n)
-    joints = np.array(sorted({column.joint for column in chain.fit_.model.columns}), dtype=int)
+    columns = [c for c in chain.fit_.model.columns if c.shape is ColumnShape.OFFSET]
+    joints = np.array(sorted({column.joint for column in columns}), dtype=int)
     errors[joints] = chain.fit_.offset_errors[joints]
-    offsets = chain.fit_.chain.offsets
-    return LackOfFit(causes, joints, offsets, errors, (), failed, causes_in_words(causes))
+    held, said = chain.fit_.chain.correction, causes_in_words(causes)
+    return LackOfFit(causes, joints, held.constant, errors, (), failed, said, rates=held.rate)

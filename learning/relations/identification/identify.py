@@ -115,7 +115,7 @@ def _more_than_gravity(waves: LearnedSymmetries) -> bool:
     lack = waves.lack
     if waves.fit is None or lack is None:
         return False
-    failed = lack.failed and not lack.gains_alone
+    failed = lack.failed and not lack.of_a_chain
     return bool(failed or len(lack.offset_joints) or waves.unmoved)
 
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from isotorque.learning.relations.potential.errors_in_variables import stiffness_matrices
+from isotorque.learning.relations.potential.errors_in_variables import (
+    stiffness_matrices,
+    torque_features,
+)
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
 from isotorque.learning.statistics.causes.extension import Kind
 from isotorque.learning.statistics.causes.linear_model import KINDS, LinearModel, deviations
@@ -43,21 +46,21 @@ def extensible_waves(fit: FittedPotential) -> LinearModel:
     ['offset']
     """
     samples = fit.whitened
-    m, k, _ = samples.whitening.shape
-    back = np.linalg.inv(samples.whitening)
-    own = back @ samples.design[:, k:].reshape(m, k, -1)
-    noise = deviations(samples.whitening)
     frequencies = fit.frequencies[:, samples.joints]
+    # not the angles that the fit has corrected: it took for their errors what is to be found
+    q = samples.measured_q
+    own = torque_features(frequencies, q)
+    noise = deviations(samples.whitening)
     known = bool(np.isinf(fit.freedom))
     model = LinearModel(
-        samples.q,
-        samples.torques(fit.explained + samples.residual),
+        q,
+        samples.measured_torque,
         own,
         samples.whitening,
         noise,
         known,
         np.sqrt(samples.floor) * noise,
         kinds=KINDS if own.shape[2] <= MOST_COLUMNS else ADDING,
-        stiffness_of=lambda x: stiffness_matrices(frequencies, x, samples.q),
+        stiffness_of=lambda x: stiffness_matrices(frequencies, x, q),
     )
     return model.reweighted(model.alone())

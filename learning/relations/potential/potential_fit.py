@@ -49,6 +49,8 @@ class WhitenedSamples:
         Upper triangular root of the normal matrix of the design.
     floor : float
         Mean square of what arithmetic leaves, in these units.
+    measured_q, measured_torque : (N, k) arrays
+        As measured, nothing corrected [rad], [N m].
     """
 
     q: Array
@@ -58,6 +60,8 @@ class WhitenedSamples:
     residual: Array
     root: Array
     floor: float
+    measured_q: Array
+    measured_torque: Array
 
     def torques(self, whitened: Array) -> Array:
         """Torques (N, k) [N m] of whitened ones (N k,)."""
@@ -99,13 +103,6 @@ class FittedPotential:
     offsets: Array
     offset_errors: Array
     whitened: WhitenedSamples
-
-    @property
-    def explained(self) -> Array:
-        """Whitened torques (N k,) of potential and constants at the samples."""
-        samples = self.whitened
-        estimate = np.concatenate([self.offsets[samples.joints], self.coefficients])
-        return np.asarray(samples.design @ estimate)
 
     @property
     def potential(self) -> TrigonometricPolynomial:
@@ -255,7 +252,7 @@ def fit_potential(
     if noise is not None:
         floor = MeasurementNoise(noise.angle, float(np.hypot(noise.torque, ROUNDING * largest)))
         found = weighted_fit(q, tau, frequencies, start, floor)
-        return _fitted(offered, touched, found, 1.0, np.inf, floor, largest)
+        return _fitted(offered, touched, found, 1.0, np.inf, floor, largest, q, tau)
     stiffness = stiffness_matrices(frequencies, start[equations:], q)
     typical = max(float(np.sqrt(np.mean(stiffness**2))), 1e-300)
     best: tuple[float, WeightedFit, float, float] | None = None
@@ -269,7 +266,7 @@ def fit_potential(
     assert best is not None
     _, found, size, ratio = best
     level = MeasurementNoise(size / typical, size * ratio)
-    return _fitted(offered, touched, found, size, float(freedom), level, largest)
+    return _fitted(offered, touched, found, size, float(freedom), level, largest, q, tau)
 
 
 def _needs_no_constants(q: Array, tau: Array, frequencies: Frequencies, largest: float) -> bool:
@@ -299,6 +296,8 @@ def _fitted(
     freedom: float,
     noise: MeasurementNoise,
     largest: float,
+    q: Array,
+    tau: Array,
 ) -> FittedPotential:
     """State a fit whose weights were right up to a factor: ``size`` is one standard deviation."""
     n = int(touched.sum())
@@ -317,6 +316,8 @@ def _fitted(
         found.residual / size,
         root,
         float(rounding),
+        q,
+        tau,
     )
     return FittedPotential(
         offered,

@@ -198,7 +198,7 @@ def _forms(q: Array, tau: Array, noise: MeasurementNoise | None) -> tuple[tuple[
     """Forms that explain the samples, and what is missing where there is none."""
     few = q.shape[1] <= SECOND_OPINION
     waves = _waves(q, tau, noise) if few else None
-    if isinstance(waves, _Obstacle) and not waves.gains_alone:
+    if isinstance(waves, _Obstacle) and not waves.of_a_chain:
         return (), waves + _reading(q, tau)
     chain = _chain(q, tau, noise, any_chain=not isinstance(waves, _Waves))
     if not few and isinstance(chain, str):
@@ -258,11 +258,11 @@ def _deviations(chance: float, n: int, parameters: int, freedom: float) -> float
 class _Obstacle(str):
     """Why potentials say nothing: samples show what these have no term for."""
 
-    gains_alone: bool
+    of_a_chain: bool
 
     def __new__(cls, examined: ExaminedFit) -> _Obstacle:
         found = super().__new__(cls, examined.obstacle)
-        found.gains_alone = examined.lack.gains_alone
+        found.of_a_chain = examined.lack.of_a_chain
         return found
 
 
@@ -333,6 +333,6 @@ class _Chain:
         freedom = np.inf if fit.verdict is FitStatus.CHI_SQUARE else self.freedom
         deviations = _deviations(chance, relation.n, fit.information.rank, freedom)
         estimate, seen, least, where = self._bounds.violation(relation, deviations)
-        constants = (1.0 - relation.Y) * np.abs(fit.chain.offsets)
+        constants = self._bounds.beside_gravity(relation)
         gravity, everything = self._bounds.of(relation)
         return estimate, seen, least, gravity + constants, everything + constants, where

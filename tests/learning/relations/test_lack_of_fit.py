@@ -63,17 +63,28 @@ def test_friction_from_one_side_is_never_called_a_constant_alone(seed, name, siz
 
 @given(seeds, st.sampled_from(["2r", "3r"]), st.floats(0.005, 0.03), st.integers(20, 300))
 @settings(max_examples=12)
-def test_a_spring_leaves_nothing_and_is_told(seed, name, share, rows):
+def test_a_spring_is_told_and_relations_hold_less_its_torque(seed, name, share, rows):
     rng = np.random.default_rng(seed)
     q, tau = anywhere(name, rng, rows)
     joint = int(rng.integers(q.shape[1]))
-    rate = share * np.abs(tau).max()
-    learned = learn_relations(q, tau + rate * np.eye(q.shape[1])[joint] * q)
-    assert learned.order == 1
-    assert learned.lack.failed
-    assert "spring" in learned.missing
-    told = re.search(rf"([-+0-9.e]+) N m/rad on joint {joint + 1}", learned.missing)
-    assert float(told[1]) == pytest.approx(rate, rel=0.1)
+    rate = share * np.abs(tau).max() * np.eye(q.shape[1])[joint]
+    learned = learn_relations(q, tau + rate * q)
+    potential, group = known_potential(name)
+    assert len(learned.group) + len(learned.corrected) == group.order
+    told = re.search(rf"spring\) of ([-+0-9.e]+) N m/rad on joint {joint + 1}", learned.note)
+    assert float(told[1]) == pytest.approx(rate[joint], rel=0.1)
+    here = rng.uniform(-np.pi, np.pi, (300, q.shape[1]))
+
+    def measured(q):
+        return potential.gradient(q) + rate * q
+
+    for relation in (*learned.group, *learned.corrected):
+        there = relation.configuration(here)  # a turn makes a difference
+        missed = np.abs(measured(there) - relation.torque(measured(here), here)).max(axis=0)
+        assert (missed <= relation.bound + 1e-6).all()
+    for relation in learned.corrected:
+        assert relation.bound.max() < 0.01 * np.abs(tau).max()
+        np.testing.assert_allclose(relation.correction.rate, rate, rtol=1e-6, atol=1e-6)
 
 
 def test_a_cable_over_a_pulley_is_told():

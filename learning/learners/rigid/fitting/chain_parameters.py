@@ -16,6 +16,7 @@ from isotorque.learning.learners.rigid.fitting.joint_columns import (
     features,
 )
 from isotorque.symbolic.common.errors import InputError
+from isotorque.symbolic.groups.correction import Correction
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -110,6 +111,11 @@ class ChainParameters:
     def offsets(self) -> Array:
         """Constant part of the measured torque of every joint, (n,) [N m]."""
         return self.coefficient(ColumnShape.OFFSET)
+
+    @property
+    def correction(self) -> Correction:
+        """Constants and springs of the joints: what may be taken off the measured torques."""
+        return Correction(self.offsets, self.coefficient(ColumnShape.SPRING))
 
     def coefficient(self, shape: ColumnShape) -> Array:
         """What multiplies a shape in the measured torque of every joint, (n,); 0 without."""

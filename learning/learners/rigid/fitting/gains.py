@@ -84,7 +84,8 @@ def with_fixed_scales(fit: ChainFit, groups: tuple[GainGroup, ...]) -> ChainFit:
     open_groups = [g for g in groups if not g.scale_known]
     if not open_groups:
         return fit
-    torque = fit.chain.torque(probe_poses(fit.model.n)) - fit.chain.offsets
+    q = probe_poses(fit.model.n)
+    torque = fit.chain.torque(q) - fit.chain.correction.at(q)
     load = np.sqrt(np.mean(torque**2, axis=0))
     gains, free = fit.chain.gains.copy(), fit.model.free_gains.copy()
     for group in open_groups:

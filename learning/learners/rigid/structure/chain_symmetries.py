@@ -53,8 +53,9 @@ class ChainSymmetries:
     shown : str
         What the samples show beside the chain: where they do, its relations are not to be claimed.
     correction : Correction or None
-        Constants of the sensors, which are no gravity: relations of the measured torque hold with
-        it, ``tau' - c = Y (tau - c)``. None where the chain has none.
+        Constants and springs of the joints, which are no gravity: relations of the measured torque
+        hold with it, ``tau' - c(q') = Y (tau - c(q))``; with springs, bounds are those of angles
+        within half a turn of zero. None where the chain has none.
     snapped : SnappedChain
         The chain that the group belongs to.
     alternatives : tuple of SymmetryGroup
@@ -96,8 +97,13 @@ class ChainSymmetries:
         if self.correction is None:
             return ""
         sizes = ", ".join(f"{x:.3g}" for x in self.correction.constant)
+        springs = ""
+        if self.correction.rate.any():
+            rates = ", ".join(f"{x:.3g}" for x in self.correction.rate)
+            springs = f", and springs of ({rates}) N m/rad"
         return (
-            f"; joints have constant torques of ({sizes}) N m beside gravity{OR_FRICTION}; "
+            f"; joints have constant torques of ({sizes}) N m beside gravity{OR_FRICTION}"
+            f"{springs}; "
             "relations that change their sign hold of gravity, of the measured torque with "
             "corrections"
         )
@@ -157,9 +163,9 @@ def chain_symmetries(
                 ]
             )
         )
-    offsets = fit.chain.offsets
-    correction = Correction(offsets) if offsets.any() else None
-    return ChainSymmetries(bounded[0], gravity[0], shown, correction, snapped, tuple(bounded[1:]))
+    correction = fit.chain.correction
+    shown_beside = correction if correction.constant.any() or correction.rate.any() else None
+    return ChainSymmetries(bounded[0], gravity[0], shown, shown_beside, snapped, tuple(bounded[1:]))
 
 
 class RelationBounds:
@@ -187,7 +193,8 @@ class RelationBounds:
         self._q = np.random.default_rng(0).uniform(-np.pi, np.pi, (POINTS, n))
         self._here = _Evaluated(fit, errors.replicas, self._q)
         self._torque = self._special.torque(self._q)
-        self._offsets = fit.chain.offsets - self._special.offsets
+        mine, other = fit.chain.correction, self._special.correction
+        self._changed = Correction(mine.constant - other.constant, mine.rate - other.rate)
         largest = float(np.abs(self._here.torque).max())
         self._floor = FLOOR * max(largest, fit.samples.largest_torque)
         self._roots = [term.root for term in beside.terms]
@@ -224,6 +231,12 @@ class RelationBounds:
         at = least.argmax(axis=0)
         return np.abs(missed).max(axis=0), seen.max(axis=0), least.max(axis=0), self._q[at]
 
+    def beside_gravity(self, relation: SymmetryRelation) -> Array:
+        """How far the measured torque misses a relation by constants and springs, (n,) [N m]."""
+        found = self._fit.chain.correction
+        missed = found.at(relation.configuration(self._q)) - relation.Y * found.at(self._q)
+        return np.asarray(np.abs(missed).max(axis=0))
+
     def _error(self, there: _Evaluated, slopes: Array, Y: Array) -> Array:
         """Standard errors of what relations miss, times `DEVIATIONS`."""
         fit, here = self._fit, self._here
@@ -239,11 +252,12 @@ class RelationBounds:
         fit, here, Y = self._fit, self._here, relation.Y
         if relation.is_identity:
             return np.zeros(relation.n), np.zeros(relation.n)
-        there = _Evaluated(fit, self._errors.replicas, relation.configuration(self._q))
+        image = relation.configuration(self._q)
+        there = _Evaluated(fit, self._errors.replicas, image)
         proved = residual_bound(self._potential, relation.A, relation.unwrapped_d, Y)
-        moved = there.torque - self._special.torque(relation.configuration(self._q))
+        moved = there.torque - self._special.torque(image)
         fitted = moved - Y * (here.torque - self._torque)
-        fitted = fitted - (self._offsets - Y * self._offsets)
+        fitted = fitted - (self._changed.at(image) - Y * self._changed.at(self._q))
         slopes = there.slopes - Y[:, None] * here.slopes
         error = self._error(there, slopes, Y)
         least = np.abs(self._special.gains) * proved

@@ -7,6 +7,8 @@ import pinocchio as pin
 import pytest
 
 from isotorque.cli.main import status
+from isotorque.learning.export.forms.torque_form import evaluate
+from isotorque.learning.export.from_learner import torque_form
 from isotorque.learning.files.csv_samples import StaticSamples, write_csv
 from isotorque.learning.files.saved_models import load_model
 from isotorque.symbolic.gravity.gravity_model import GravityModel
@@ -66,6 +68,31 @@ def test_noise_is_stated_or_estimated_and_errors_are_told(tmp_path, capsys):
         assert max(document["relations"][1]["bound"]) > 0.01
 
 
+def test_a_spring_becomes_part_of_the_model(tmp_path, capsys):
+    """Named, predicted, exported, and taken off where relations are judged."""
+    data, fresh, out = tmp_path / "poses.csv", tmp_path / "fresh.csv", tmp_path / "out"
+    for file, seed in ((data, 0), (fresh, 1)):
+        recording(file, 30, 0.02, seed, lambda q, tau: (q, tau + [0, 2, 0] * q), "3r")
+    assert isotorque("learn", "--data", data, "--out", out, "--torque-noise", 0.02) == 0
+    said = capsys.readouterr().out
+    assert (
+        "beside gravity, part of the model: a torque that grows with its angle (a spring)" in said
+    )
+    assert "springs of (0, 2, 0) N m/rad" in said
+    learner = load_model(out).learner
+    q = np.random.default_rng(2).uniform(-3.0, 3.0, (100, 3))
+    true = GravityModel(load_robot("3r")).torque(q) + [0, 2, 0] * q
+    assert np.abs(learner.predict(q) - true).max() < 0.3
+    np.testing.assert_allclose(evaluate(torque_form(learner), q), learner.predict(q), atol=1e-9)
+    assert learner.chain_.correction.rate[1] == pytest.approx(2.0, abs=0.02)
+    document = json.loads((out / "relations.json").read_text())
+    assert document["order"] == 16
+    for relation in document["relations"]:
+        assert relation["correction"]["rate"] == learner.chain_.correction.rate.tolist()
+    for what in (out, out / "relations.json"):
+        assert isotorque("verify", what, "--data", fresh) == 0
+
+
 def test_too_few_poses_say_how_many_are_missing_and_leave_nothing(tmp_path, capsys):
     data, out = tmp_path / "poses.csv", tmp_path / "out"
     recording(data, 3)
@@ -79,12 +106,12 @@ def test_too_few_poses_say_how_many_are_missing_and_leave_nothing(tmp_path, caps
     [
         ("panda", lambda q, tau: (np.rad2deg(q), tau), "the angles are in degrees"),
         ("panda", lambda q, tau: (tau, q), "the columns of angles and torques are exchanged"),
-        ("3r", lambda q, tau: (q, tau + 3.0 * q), None),
+        ("3r", lambda q, tau: (q, tau + 3.0 * np.sin(2.0 * q)), None),
     ],
-    ids=["degrees", "exchanged", "spring"],
+    ids=["degrees", "exchanged", "cable"],
 )
 def test_what_is_no_rigid_chain_is_not_a_model(robot, change, reading, tmp_path, capsys):
-    """What it would be if it were read otherwise is said; a spring is no reading."""
+    """What it would be if it were read otherwise is said; a cable is no reading."""
     data, out = tmp_path / "poses.csv", tmp_path / "out"
     recording(data, 20, noise=0.02, change=change, robot=robot)
     assert isotorque("learn", "--data", data, "--out", out, "--torque-noise", 0.02) == 1

@@ -108,7 +108,7 @@ def test_many_joints_are_told_by_a_chain():
     ("change", "words"),
     [
         (lambda q, tau: (q[:3], tau[:3]), "more"),
-        (lambda q, tau: (q, tau + 3.0 * q), "a spring"),
+        (lambda q, tau: (q, tau + 3.0 * np.sin(2.0 * q)), "a cable"),
         (lambda q, tau: (np.rad2deg(q), tau), "if the angles are in degrees"),
         (lambda q, tau: (q * [1.0, 0.0], torque(q * [1.0, 0.0])), "joint 2 moved"),
     ],
@@ -120,6 +120,18 @@ def test_nothing_is_said_without_samples_that_tell(change, words):
     assert found[0].means == ""
     assert words in found[0].missing
     assert np.isnan(found[0].most).all()
+
+
+def test_springs_break_relations_unless_they_are_taken_off():
+    q, tau = samples(0, 30, 0.02)
+    spring = Correction([0.0, 0.0], [0.0, 3.0])
+    plain, corrected = relation_errors([FLIP, FLIP.of_measured(spring)], q, tau + spring.at(q))
+    (by_chain,) = plain  # waves have no term for it
+    assert by_chain.means == "a rigid chain"
+    assert by_chain.least[1] > 5.0
+    assert by_chain.most[1] > by_chain.estimate[1] > 5.0
+    for errors in corrected:
+        assert errors.most.max() < 0.5
 
 
 def test_relations_of_other_arms_are_refused():
