@@ -150,8 +150,9 @@ class LearnedSymmetries:
         What the residuals of the fit say: constant torques, and torques that are no rigid gravity.
     corrected : tuple of SymmetryRelation
         Relations that hold of gravity but not of the measured torque, because they flip a joint
-        with a constant torque; they are not in the group. With their ``correction``, the constant,
-        they hold of the measured torque, within their bounds.
+        with a constant torque, or move one with a spring; they are not in the group. With their
+        ``correction``, the constant and the spring, they hold of the measured torque, within their
+        bounds.
     unmoved : tuple of int
         Joints that never moved: the relations hold at the one angle of each.
     chain : RigidChain or None
@@ -183,8 +184,8 @@ class LearnedSymmetries:
         said = f"beside gravity the samples show {self.lack.said}"
         if self.corrected:
             said += (
-                f"; {len(self.corrected)} relations that flip such a joint hold of gravity "
-                "alone, not of the measured torque but with a correction, and are listed apart"
+                f"; {len(self.corrected)} relations that change such a joint hold of gravity "
+                "alone, of the measured torque with a correction, and are listed apart"
             )
         return said
 
