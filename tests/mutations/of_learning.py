@@ -39,13 +39,70 @@ RELATIONS = (
     ),
     Mutation(
         "learning/relations/lack_of_fit.py",
-        "return self.failed and bool(kinds & GAINS)",
-        "return False and bool(kinds & GAINS)",
+        "return self.failed and bool(kinds & OF_A_CHAIN)",
+        "return False and bool(kinds & OF_A_CHAIN)",
         (
             "tests/learning/relations/test_lack_of_fit.py"
             "::test_a_wrong_sign_is_named_and_breaks_no_relation",
         ),
         "gains break no relation",
+    ),
+    Mutation(
+        "learning/statistics/causes/selection.py",
+        "return bool(other.ratio - best.ratio > stats.chi2.isf(SAYS_MORE, more))",
+        "return True",
+        (
+            "tests/learning/statistics/causes/test_selection.py"
+            "::test_what_contains_a_cause_is_told_beside_it_only_if_it_explains_more",
+        ),
+        "what contains a cause is compatible in any case",
+    ),
+    Mutation(
+        "learning/relations/potential/extensible_waves.py",
+        "q = samples.measured_q",
+        "q = samples.q",
+        (
+            "tests/learning/relations/test_lack_of_fit.py"
+            "::test_a_spring_is_told_and_relations_hold_less_its_torque",
+        ),
+        "angles that a fit has corrected hide what it has no term for",
+    ),
+    Mutation(
+        "learning/relations/identification/chain_identification.py",
+        "return bool(kept[correction.constant != 0.0].all() and turned[springs].all())",
+        "return bool(kept[correction.constant != 0.0].all())",
+        (
+            "tests/learning/relations/identification/test_chain_identification.py"
+            "::test_springs_are_taken_off_and_relations_hold_beside_them",
+        ),
+        "relations that move a joint with a spring do not hold of the measured torque",
+    ),
+    Mutation(
+        "learning/export/from_learner.py",
+        "if not chain.coefficient(ColumnShape.SPRING).any():",
+        "if True:",
+        (
+            "tests/isotorque/runs/from_data/test_chain_from_data.py"
+            "::test_a_spring_becomes_part_of_the_model",
+        ),
+        "what is exported has the springs of the model",
+    ),
+    Mutation(
+        "learning/learners/rigid/causes/diagnose.py",
+        "weights / weights.mean() if m else weights",
+        "np.ones(m)",
+        ("tests/learning/learners/rigid/causes/test_diagnose.py::test_weights_count",),
+        "samples of little weight name no cause",
+    ),
+    Mutation(
+        "symbolic/groups/symmetry_group.py",
+        "if relation.correction is not None:",
+        "if False:",
+        (
+            "tests/symbolic/groups/test_symmetry_relation.py"
+            "::test_corrections_that_do_not_fit_are_refused",
+        ),
+        "arrays of a group are applied to torques as they are",
     ),
     Mutation(
         "learning/statistics/causes/selection.py",

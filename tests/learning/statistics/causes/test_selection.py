@@ -201,6 +201,19 @@ def test_of_causes_that_cannot_be_told_apart_the_simplest_is_named_and_all_are_l
     raise AssertionError("no seed left them tied")
 
 
+def test_what_contains_a_cause_is_told_beside_it_only_if_it_explains_more():
+    """A spring has a constant of its own: it is compatible with any, and says nothing then."""
+    alone = with_spring = 0
+    for seed in range(40):
+        choice, *_ = decided(model_of(seed, 40, lambda q: 0.5 * np.eye(2)[0], True)).choices
+        assert (choice.extension.kind, choice.extension.joint) == (Kind.OFFSET, 0)
+        told = {(rival.kind, rival.joint) for rival in choice.rivals}
+        with_spring += (Kind.SPRING, 0) in told
+        alone += told == {(Kind.OFFSET, 0)}
+    assert with_spring <= 6  # two of 40 by chance
+    assert alone >= 30
+
+
 def test_nothing_is_named_below_rounding():
     rng = np.random.default_rng(0)
     q = rng.uniform(-2.5, 2.5, (40, 2))
