@@ -243,6 +243,8 @@ def explained(
             lack = _beside(learner, learner.shown_causes(), failed=True)
             return learner, f"an arm whose torque is rigid gravity: there is {lack.said}", lack
         learner, lack = extended, _beside(extended, extended.causes_, failed=False)
+    elif learner.verdict_.accepted and learner.fit_.model.columns:  # it was told of some
+        lack = _beside(learner, learner.causes_, failed=False)
     if not learner.verdict_.accepted:
         return learner, learner.remark_, None
     joint = unfelt_lever(learner.fit_)

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.identification.chain_identification import (
     MOST_POSES,
     identify_by_chain,
+    relations_of_chain,
 )
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.symbolic.common.angles import wrap
@@ -140,6 +142,20 @@ def test_springs_are_taken_off_and_relations_hold_beside_them(name, seed):
         assert (missed <= relation.bound + 1e-9).all()
     for relation in found.corrected:
         assert relation.correction.rate[joint] == pytest.approx(0.4, abs=0.05)
+
+
+def test_what_a_chain_was_told_of_is_taken_off_too():
+    gravity = GravityModel(load_robot("3r"))
+    rng = np.random.default_rng(0)
+    q = rng.uniform(-2.5, 2.5, (40, 3))
+    tau = gravity.torque(q) + [0.0, 1.0, 0.0] + 0.02 * rng.normal(size=q.shape)
+    told = RigidChain(unknown_offsets=[False, True, False]).fit(q, tau)
+    assert told.diagnosis().causes == ()
+    found = relations_of_chain(told)
+    assert all(relation.Y[1] > 0.0 for relation in found.group)
+    assert len(found.corrected) == found.order == 8
+    for relation in found.corrected:
+        np.testing.assert_allclose(relation.correction.constant, [0.0, 1.0, 0.0], atol=0.05)
 
 
 def test_nothing_is_claimed_of_an_arm_with_a_cable():
