@@ -157,8 +157,8 @@ def _alarms(outcomes: Sequence[Outcome]) -> Iterator[Demand]:
     for pool in CLEAN:
         for robot in ROBOTS:
             some = part(outcomes, robot, pool)
-            what = f"{robot}, {pool}: a cause is named"
-            yield at_most(what, *number(some, lambda o: bool(o.naming.named)), ALARMS)
+            what = f"{robot}, {pool}: no cause is named"
+            yield at_least(what, *number(some, lambda o: not o.naming.named), 1.0 - ALARMS)
 
 
 def set_size(outcomes: Sequence[Outcome]) -> float:

@@ -209,8 +209,8 @@ MUTATIONS = (
     ),
     Mutation(
         "learning/statistics/causes/selection.py",
-        "log_p = best.log_p + np.log(tried)",
-        "log_p = best.log_p",
+        "level = np.log(LATER if choices else FAMILY_WISE) - np.log(tried)",
+        "level = np.log(LATER if choices else FAMILY_WISE)",
         ("tests/learning/statistics/causes/test_selection.py",),
         "the level is that of all candidates together",
     ),

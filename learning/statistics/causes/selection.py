@@ -14,7 +14,7 @@ from isotorque.learning.statistics.causes.extended_fit import ExtendedFit
 from isotorque.learning.statistics.causes.extensible_model import ExtensibleModel, F
 from isotorque.learning.statistics.causes.extension import Extension, Kind, Term
 
-FAMILY_WISE, LATER = 0.01, 0.001
+FAMILY_WISE, LATER = 0.005, 0.001
 """Chance that anything is named where there is nothing, over all candidates; that anything is
 named beside the first cause where there is nothing else."""
 TIED = 6.0
@@ -121,7 +121,7 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
     Notes
     -----
     Every cause is added to the model and fitted with it. The best score counts; of those that
-    cannot be told apart from it the one with the fewest unknowns; it is chosen if its likelihood
+    cannot be told apart from it the one with the fewest unknowns, among those whose likelihood
     ratio is significant at `FAMILY_WISE` over all candidates (chi-square where the noise is known,
     else F). Where a model has many minima, comparing the best of many candidates with one minimum
     of the model alone finds causes in clean samples: the model alone is therefore fitted again
@@ -134,16 +134,16 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
         fit, found, tried = _best(model, fit)
         if not found:
             break
-        best, rivals = _simplest(found)
-        log_p = best.log_p + np.log(tried)
-        level = LATER if choices else FAMILY_WISE
-        if log_p >= np.log(level) or best.score <= 0.0:
+        level = np.log(LATER if choices else FAMILY_WISE) - np.log(tried)
+        significant = [candidate for candidate in found if candidate.log_p < level]
+        if not significant:
             break
+        best, rivals = _simplest(significant, found)
         largest = float(np.abs(model.torque).max())
         if np.abs(best.fit.effect(best.extension.terms)).max() < NEGLIGIBLE * largest:
             break
         named = tuple(_renamed(c.extension, c.fit) for c in (best, *rivals))
-        choices.append(Choice(named[0], float(np.exp(log_p)), named))
+        choices.append(Choice(named[0], float(np.exp(best.log_p) * tried), named))
         fit = model.refitted(best.fit.terms, best.fit, thorough=True)
         model = model.reweighted(fit)
         fit = model.refitted(fit.terms, fit, thorough=True)
@@ -252,14 +252,16 @@ def _ratio_by_joint(model: ExtensibleModel[F], null: F, fit: F) -> float:
     return float(null.spare / n * np.sum(np.log(before / after)))
 
 
-def _simplest(found: Sequence[Candidate[F]]) -> tuple[Candidate[F], list[Candidate[F]]]:
+def _simplest(
+    significant: Sequence[Candidate[F]], found: Sequence[Candidate[F]]
+) -> tuple[Candidate[F], list[Candidate[F]]]:
     """Of those that cannot be told apart, the one with the fewest unknowns; and the others.
 
     One that contains it is another only where its further unknowns explain something.
     """
-    near = [c for c in found if found[0].score - c.score < TIED]
-    near.sort(key=lambda c: (c.degrees, -c.score))
-    best = near[0]
+    least = significant[0].score - TIED
+    best = min((c for c in significant if c.score > least), key=lambda c: (c.degrees, -c.score))
+    near = sorted((c for c in found if c.score > least), key=lambda c: (c.degrees, -c.score))
     inside = set(best.extension.terms)
 
     def is_another(other: Candidate[F]) -> bool:
@@ -268,7 +270,7 @@ def _simplest(found: Sequence[Candidate[F]]) -> tuple[Candidate[F], list[Candida
             return True
         return bool(other.ratio - best.ratio > stats.chi2.isf(SAYS_MORE, more))
 
-    return best, [other for other in near[1:] if is_another(other)]
+    return best, [other for other in near if other is not best and is_another(other)]
 
 
 def _renamed(extension: Extension, fit: ExtendedFit) -> Extension:

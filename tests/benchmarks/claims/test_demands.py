@@ -111,10 +111,10 @@ def spring(o):
             "outliers, below 3.5 standard errors: nothing wrong is said",
         ),
         (
-            0.02,
+            0.1,
             lambda o: o.setting.pool == "clean-unknown" and o.setting.robot == "3r",
             lambda o: named(o, (OFFSET,)),
-            "3r, clean-unknown: a cause is named",
+            "3r, clean-unknown: no cause is named",
         ),
     ],
 )

@@ -28,6 +28,9 @@ from isotorque.symbolic.common.single_thread import single_thread
 
 Array = NDArray[np.float64]
 
+LIGHT = 1e-3
+"""Rows of less weight, relative to the largest, are left out: they would count among the degrees of
+freedom."""
 SPARE_POSES = 2
 """Poses more than determine a chain, from which causes are looked for."""
 
@@ -139,6 +142,9 @@ def diagnose(
     if weights.shape != torques.shape[:1] or not (np.isfinite(weights) & (weights > 0.0)).all():
         accepted = f"a number above 0 for every row, shape {torques.shape[:1]}"
         raise InputError("diagnose", "weight", f"shape {weights.shape}", accepted)
+    kept = weights > LIGHT * weights.max(initial=0.0)
+    configurations, torques, weights = configurations[kept], torques[kept], weights[kept]
+    sides = None if sides is None else sides[kept]
     configurations, torques, sides, weights = _by_pose_and_side(
         configurations, torques, sides, weights
     )
