@@ -150,6 +150,9 @@ def _print_learned(learned: LearnedSymmetries, document: dict[str, Any]) -> None
         print(f"pairs suggest, other samples contradict: {entry.relation}")
     if learned.note:
         print(learned.note)
+    for relation in learned.corrected:
+        bound = f"{relation.bound.max(initial=0.0):.2g} N m"
+        print(f"  {relation}  [less its correction c; wrong by at most {bound}]")
     if learned.missing:
         print(f"missing: {learned.missing}")
 

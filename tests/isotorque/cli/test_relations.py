@@ -12,6 +12,7 @@ from isotorque.learning.recordings.recorded_data import record_samples
 from isotorque.learning.recordings.recording import Recording
 from isotorque.symbolic.level_sets.level_set import level_set
 from isotorque.symbolic.robots.load_robot import load_robot
+from isotorque.verify.relations.relation_files import load_relations
 from tests.learning.static_data import known_potential, recording, stable_samples, with_angle_noise
 
 
@@ -265,6 +266,37 @@ def test_bad_recordings_get_an_answer_that_says_what_is_missing(tmp_path, capsys
     assert all(word in document["missing"] for word in words)
     assert status(["relations", str(out), "--quiet"]) == 0
     assert f"missing: {document['missing']}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("beside", "said"),
+    [
+        (lambda q: [0.0, 0.8] + 0.0 * q, "a constant torque of +0.8 N m on joint 2"),
+        (lambda q: [0.0, 0.3] * q, "(a spring) of +0.3 N m/rad on joint 2"),
+    ],
+    ids=["constant", "spring"],
+)
+def test_relations_less_what_joints_carry_beside_gravity_are_listed(tmp_path, capsys, beside, said):
+    potential, group = known_potential("2r")
+    q = np.random.default_rng(0).uniform(-2.5, 2.5, (25, 2))
+    out = record(tmp_path / "run", "2r", q, potential.gradient(q) + beside(q))
+    code, document = relations(capsys, out)
+    assert code == 0
+    assert document["order"] + len(document["corrected"]) == group.order
+    causes = document["misfit"]["causes"]
+    assert [cause["joint"] for cause in causes] == [1]
+    assert not document["misfit"]["failed"]
+    assert status(["relations", str(out), "--quiet"]) == 0
+    text = capsys.readouterr().out
+    assert said in text
+    assert text.count("less its correction c;") == len(document["corrected"])
+    file = load_relations(out / "relations.json")
+    here = np.random.default_rng(1).uniform(-3.0, 3.0, (50, 2))
+    for relation in (*file, *file.corrected):
+        there = relation.configuration(here)
+        measured = potential.gradient(here) + beside(here)
+        missed = potential.gradient(there) + beside(there) - relation.torque(measured, here)
+        assert np.abs(missed).max() < 1e-6
 
 
 def test_samples_of_any_phase_are_used_where_nothing_was_discovered(tmp_path, capsys):
