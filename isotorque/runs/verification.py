@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from isotorque.learning.files.csv_samples import joint_names_of, read_csv
 from isotorque.learning.files.saved_models import load_model
+from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.runs.from_data.data_remarks import analytic_remarks
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.strict_json import read_json
 from isotorque.symbolic.gravity.gravity_model import GravityModel
+from isotorque.symbolic.groups.correction import Correction
 from isotorque.symbolic.robots.load_robot import Robot
 from isotorque.verify.models.fresh_measurements import (
     FreshMeasurements,
@@ -27,6 +32,8 @@ from isotorque.verify.relations.measured_relations import verify_relations_on_me
 from isotorque.verify.relations.relation_files import load_relations
 from isotorque.verify.relations.relations_file_claims import verify_relations_file
 from isotorque.verify.verdict import Status, Verdict, all_passed
+
+Array = NDArray[np.float64]
 
 RELATION_TOLERANCE = 1e-9
 
@@ -183,11 +190,28 @@ def _model(
     if saved.joint_names != robot.joint_names:
         raise InputError(path, "joints", list(saved.joint_names), f"{list(robot.joint_names)}")
     allowed = default_tolerance(gravity, robot.limits) if tolerance is None else tolerance
+    predict: Callable[[Array], Array] = saved.learner.predict
+    beside = _beside_gravity(saved.learner)
     judged = verify_model(
-        saved.learner,
+        predict if beside is None else lambda q: predict(q) - beside.at(q),
         gravity,
         limits=robot.limits,
         tolerance=allowed,
         largest_tolerance=allowed,
     )
-    return judged.verdicts
+    if beside is None:
+        return judged.verdicts
+    said = f"gravity alone, less {beside.in_words()} that the model holds beside it: "
+    return tuple(replace(v, claim=said + v.claim) for v in judged.verdicts)
+
+
+def _beside_gravity(learner: Any) -> Correction | None:
+    """Constants and springs that a model holds, which no robot file has; None without any."""
+    if isinstance(learner, RigidChain):
+        found = learner.chain_.correction
+    else:
+        offsets = np.asarray(getattr(learner, "offsets_", 0.0))
+        if offsets.ndim != 1:  # of local models they are another thing
+            return None
+        found = Correction(offsets)
+    return found if found.constant.any() or found.rate.any() else None

@@ -60,8 +60,9 @@ def verify_relation(
     Parameters
     ----------
     relation
-        The claimed relation, judged as it was given: entries are the rationals that the floats
-        are, and offsets keep their whole turns. Its matrix may be real (learned).
+        The claimed relation, judged as it was given (of gravity: a correction is not looked at):
+        entries are the rationals that the floats are, and offsets keep their whole turns. Its
+        matrix may be real (learned).
     gravity
         The true gravity torque.
     tolerance
@@ -116,6 +117,7 @@ def verify_relation(
     n, potential = gravity.n, gravity.potential
     if relation.n != n:
         raise InputError("relation", "number of joints", relation.n, f"{n}, as the robot has")
+    relation = relation.of_measured(None)  # of gravity: what is beside it is not the robot's
     exact = exact_potential(potential)
 
     @cache

@@ -145,13 +145,14 @@ def beside_chain(fit: ChainFit, deviations: float) -> BesideChain:
             terms.append(_term(kind, added, size, deviations))
     probes = np.random.default_rng(0).uniform(-np.pi, np.pi, (PROBES, samples.n))
     anywhere = fit.chain.derivatives(probes, raw_directions(fit.chain.n))
+    springs_held = np.diag(fit.chain.correction.rate)  # their rates make up for errors of angles
     for kind, here, there in (
         (SCALE, q, probes),
-        (COMPLIANCE, samples.torque, anywhere.torque),
+        (COMPLIANCE, slopes.torque, anywhere.torque),  # as fitted: noise gives way to nothing
     ):
-        added = tried((slopes.stiffness * here[:, None, :])[:, :, :, None])
+        added = tried(((slopes.stiffness - springs_held) * here[:, None, :])[:, :, :, None])
         if added is not None:
-            felt = np.abs(anywhere.stiffness * there[:, None, :]).max(axis=0)
+            felt = np.abs((anywhere.stiffness - springs_held) * there[:, None, :]).max(axis=0)
             terms.append(_term_of_angles(kind, added, felt, deviations))
     needed = -(-(information.rank + WIDEST * samples.n + SPARE) // samples.n)
     return BesideChain(tuple(terms), needed)

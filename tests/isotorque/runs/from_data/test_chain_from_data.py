@@ -93,6 +93,28 @@ def test_a_spring_becomes_part_of_the_model(tmp_path, capsys):
         assert isotorque("verify", what, "--data", fresh) == 0
 
 
+@pytest.mark.parametrize(
+    ("learner", "rate"), [(None, 0.0), (None, 1.5), ("parametric", 0.0), ("trigonometric", 0.0)]
+)
+def test_a_robot_file_judges_gravity_alone(learner, rate, tmp_path, capsys):
+    """It has neither the constants nor the springs that a model holds, nor has it to have them."""
+    robot = load_robot("2r")
+    q = np.random.default_rng(0).uniform(-2.5, 2.5, (40, 2))
+    tau = GravityModel(robot).torque(q) + [0.0, 2.0] + [rate, 0.0] * q
+    tau += 0.02 * np.random.default_rng(1).normal(size=q.shape)
+    data, out = tmp_path / "poses.csv", tmp_path / "out"
+    write_csv(data, StaticSamples(q, tau), robot.joint_names)
+    more = ["2r", "--learner", learner] if learner else []
+    assert isotorque("learn", *more, "--data", data, "--out", out) == 0
+    capsys.readouterr()
+    model = out / "model.json"
+    assert isotorque("verify", model, "--robot", "2r", "--tolerance", 0.2) == 0
+    said = capsys.readouterr().out
+    assert "gravity alone, less c" in said
+    assert "that the model holds beside it: torque RMSE of each joint" in said
+    assert isotorque("verify", model, "--robot", "3r") == 2
+
+
 def test_too_few_poses_say_how_many_are_missing_and_leave_nothing(tmp_path, capsys):
     data, out = tmp_path / "poses.csv", tmp_path / "out"
     recording(data, 3)
