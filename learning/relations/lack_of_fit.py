@@ -26,6 +26,9 @@ from isotorque.symbolic.groups.correction import Correction
 
 Array = NDArray[np.float64]
 
+SIGNIFICANCE = 1e-3
+"""Chance with which samples of a rigid arm are said to be misfitted. Relations are refused then, so
+it is smaller than that of naming causes; what is not seen is in every bound."""
 NEGLIGIBLE = 1e-6
 """Misfits below this share of the largest torque are where motions ended; bounds allow for them."""
 KINDS, WIDEST = 2, 2
@@ -162,7 +165,7 @@ def lack_of_fit(
     """
     model = extensible_waves(fit)
     alone = model.alone()
-    selection = selected(model, alone)
+    selection = selected(model, alone, level=SIGNIFICANCE)
     joints = fit.whitened.joints
     left = _left(selection.fit)
     causes = causes_of(selection, joints.tolist())

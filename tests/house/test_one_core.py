@@ -68,7 +68,7 @@ def test_relations_of_samples_are_decided_by_the_core(module, monkeypatch):
     class Asked(Exception):
         pass
 
-    def ask(*_):
+    def ask(*_, **__):
         raise Asked
 
     assert learn_relations(q, tau).lack.offset_joints.tolist() == [1]

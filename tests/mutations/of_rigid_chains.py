@@ -209,8 +209,8 @@ MUTATIONS = (
     ),
     Mutation(
         "learning/statistics/causes/selection.py",
-        "level = np.log(LATER if choices else FAMILY_WISE) - np.log(tried)",
-        "level = np.log(LATER if choices else FAMILY_WISE)",
+        "least = np.log(min(LATER, level) if choices else level) - np.log(tried)",
+        "least = np.log(min(LATER, level) if choices else level)",
         ("tests/learning/statistics/causes/test_selection.py",),
         "the level is that of all candidates together",
     ),

@@ -35,6 +35,8 @@ METHOD = "rigid chain"
 STARTS = 60
 SAME_TORQUE = 0.01
 """Torques that differ by less, relative to the largest, are the same."""
+SAME = 1e-9
+"""Entries and offsets [rad] that differ by less are equal."""
 MOST_JOINTS = 8
 """A chain that does not fit is asked for wrong gains and signs up to so many joints: with 12 that
 takes as long as two fits, and most arms of more joints branch."""
@@ -206,9 +208,11 @@ def relations_of_chain(learner: RigidChain, *, any_chain: bool = True) -> Learne
 
 def _needs_none(relation: SymmetryRelation, correction: Correction) -> bool:
     """Whether a relation of gravity holds of the measured torque as it is: c(q') = Y c(q)."""
+    if relation.is_identity:
+        return True
     kept = relation.Y > 0.0
-    turned = (relation.Y[:, None] * np.eye(relation.n) == relation.A).all(axis=1)
-    turned &= relation.unwrapped_d == 0.0
+    moved = np.abs(relation.A - relation.Y[:, None] * np.eye(relation.n)).max(axis=1)
+    turned = np.maximum(moved, np.abs(relation.unwrapped_d)) < SAME
     springs = correction.rate != 0.0
     return bool(kept[correction.constant != 0.0].all() and turned[springs].all())
 

@@ -109,7 +109,7 @@ class Selection(Generic[F]):
     adequate: bool
 
 
-def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
+def selected(model: ExtensibleModel[F], null: F, *, level: float = FAMILY_WISE) -> Selection[F]:
     """Choose the causes that samples show beside a model.
 
     Parameters
@@ -117,12 +117,14 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
     model : ExtensibleModel
     null : ExtendedFit
         Of the model alone, with what it contains anyway.
+    level : float
+        Chance that anything is named where there is nothing, over all candidates.
 
     Notes
     -----
     Every cause is added to the model and fitted with it. The best score counts; of those that
     cannot be told apart from it the one with the fewest unknowns, among those whose likelihood
-    ratio is significant at `FAMILY_WISE` over all candidates (chi-square where the noise is known,
+    ratio is significant at ``level`` over all candidates (chi-square where the noise is known,
     else F). Where a model has many minima, comparing the best of many candidates with one minimum
     of the model alone finds causes in clean samples: the model alone is therefore fitted again
     from the chains of the best candidates. After `MOST` causes, or when none is significant, those
@@ -134,8 +136,8 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
         fit, found, tried = _best(model, fit)
         if not found:
             break
-        level = np.log(LATER if choices else FAMILY_WISE) - np.log(tried)
-        significant = [candidate for candidate in found if candidate.log_p < level]
+        least = np.log(min(LATER, level) if choices else level) - np.log(tried)
+        significant = [candidate for candidate in found if candidate.log_p < least]
         if not significant:
             break
         best, rivals = _simplest(significant, found)
@@ -149,7 +151,7 @@ def selected(model: ExtensibleModel[F], null: F) -> Selection[F]:
         fit = model.refitted(fit.terms, fit, thorough=True)
         if best.extension.kind is Kind.PAYLOAD:
             break
-    fit, choices = _without_superfluous(model, fit, choices, null.terms)
+    fit, choices = _without_superfluous(model, fit, choices, null.terms, level)
     return Selection(model, fit, tuple(choices), is_adequate(model, fit))
 
 
@@ -225,7 +227,9 @@ def _scored(
     """Likelihood ratio, score and chance of a cause."""
     without, cost = null.cost, max(min(fit.cost, null.cost), 1e-300)
     left = max(null.spare - df, 1)
-    log_p = float(stats.f.logsf((without - cost) / df / (cost / left), df, left))
+    # every joint has a level of noise of its own: it is known with its own degrees of freedom
+    own = max(left / model.q.shape[1], 1.0)
+    log_p = float(stats.f.logsf((without - cost) / df / (cost / left), df, own))
     ratio = _ratio_by_joint(model, null, fit)
     if model.noise_known:
         ratio = without - cost
@@ -283,7 +287,11 @@ def _renamed(extension: Extension, fit: ExtendedFit) -> Extension:
 
 
 def _without_superfluous(
-    model: ExtensibleModel[F], fit: F, choices: list[Choice], always: tuple[Term, ...]
+    model: ExtensibleModel[F],
+    fit: F,
+    choices: list[Choice],
+    always: tuple[Term, ...],
+    level: float,
 ) -> tuple[F, list[Choice]]:
     """Drop causes that are not significant beside the others."""
     while len(choices) > 1:
@@ -298,7 +306,7 @@ def _without_superfluous(
                 without = model.refitted(terms, fit, thorough=True)
             df = max(without.spare - fit.spare, 1)
             found = _scored(model, without, dropped.extension, df, fit)
-            if found.log_p + np.log(tried) >= np.log(FAMILY_WISE):
+            if found.log_p + np.log(tried) >= np.log(level):
                 fit, choices = without, kept
                 break
         else:

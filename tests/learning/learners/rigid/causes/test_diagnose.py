@@ -101,10 +101,18 @@ def test_rows_of_one_pose_count_once_but_from_either_side():
 
 
 def test_weights_count():
-    """Rows of little weight may show what they like; rows of one pose are weighed together."""
+    """A constant that the good rows show is lost among the others, unless these weigh less."""
     gravity = GravityModel(load_robot("2r"))
     rng = np.random.default_rng(4)
     q = rng.uniform(-2.0, 2.0, (160, 2))
+    noise = np.where(np.arange(160) < 40, 0.02, 0.2)[:, None]
+    tau = gravity.torque(q) + [0.0, 0.03] + noise * rng.normal(size=q.shape)
+    weight = noise[:, 0] ** -2.0
+    assert diagnose(q, tau).causes == ()
+    (cause,) = diagnose(q, tau, weight=weight).causes
+    assert (cause.kind, cause.joint) == (Kind.OFFSET, 1)
+    assert cause.size[0] == pytest.approx(0.03, abs=4.0 * cause.standard_error[0])
+    # rows of no weight may show what they like
     tau = gravity.torque(q) + NOISE * rng.normal(size=q.shape)
     tau[40:, 1] += 0.5
     weight = np.where(np.arange(160) < 40, 1.0, 1e-6)
