@@ -20,7 +20,11 @@ from isotorque.learning.statistics.causes.cause_words import causes_in_words
 from isotorque.learning.statistics.causes.extended_fit import ExtendedFit
 from isotorque.learning.statistics.causes.extension import Kind
 from isotorque.learning.statistics.causes.selection import is_clear, selected
-from isotorque.learning.statistics.causes.unexplained import beyond_scatter, beyond_stated_noise
+from isotorque.learning.statistics.causes.unexplained import (
+    beyond_scatter,
+    beyond_stated_noise,
+    unspent,
+)
 from isotorque.learning.statistics.poses import Poses
 from isotorque.symbolic.groups.correction import Correction
 
@@ -185,8 +189,9 @@ def lack_of_fit(
 
 def _left(found: ExtendedFit) -> str:
     """What is left in words, if it is more than sensors leave."""
-    left = found.rest / np.sqrt(found.spare / found.torque.size)
-    spread, size = (np.sqrt(np.mean(torque**2, axis=0)) for torque in (left, found.torque))
+    spread, size = (
+        np.sqrt(np.mean(torque**2, axis=0)) for torque in (unspent(found), found.torque)
+    )
     share = float(np.linalg.norm(spread) / max(float(np.linalg.norm(size)), 1e-300))
     if not share > NOISY:
         return ""

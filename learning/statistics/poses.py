@@ -59,11 +59,12 @@ class Poses:
         """Number of rows of every pose, (count,)."""
         return np.bincount(self.label, minlength=self.count)
 
-    def means(self, values: Array) -> Array:
-        """Mean over the rows of every pose, (count, k), of values (N, k)."""
+    def means(self, values: Array, weight: Array | None = None) -> Array:
+        """Mean over the rows of every pose, (count, k), of values (N, k), weighed by (N,)."""
         sums = np.zeros((self.count, values.shape[1]))
-        np.add.at(sums, self.label, values)
-        return np.asarray(sums / self.rows[:, None])
+        np.add.at(sums, self.label, values if weight is None else values * weight[:, None])
+        total = self.rows if weight is None else np.bincount(self.label, weight, self.count)
+        return np.asarray(sums / np.maximum(total, 1e-300)[:, None])
 
     def configurations(self, q: Array) -> Array:
         """Mean configurations (count, n) of rows q (N, n) [rad], turns of the first row kept."""
@@ -201,11 +202,10 @@ def weighed_by_pose(q: Array, tau: Array, weight: Array) -> tuple[Array, Array, 
     poses = group_poses(q)
     if not poses.repeated:
         return q, tau, weight
-    total = poses.means(weight[:, None])[:, 0] * poses.rows
-    share = weight * poses.rows[poses.label] / np.maximum(total, 1e-300)[poses.label]
     first = q[poses.first]
-    moved = poses.means(share[:, None] * wrap(q - first[poses.label]))
-    return first + moved, poses.means(share[:, None] * tau), total
+    moved = poses.means(wrap(q - first[poses.label]), weight)
+    total = np.bincount(poses.label, weight, poses.count).astype(float)
+    return first + moved, poses.means(tau, weight), total
 
 
 def _repeated(places: Array, box: Array, exact: Labels) -> Labels:

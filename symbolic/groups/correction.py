@@ -54,6 +54,10 @@ class Correction:
             np.array_equal(self.constant, other.constant) and np.array_equal(self.rate, other.rate)
         )
 
+    def as_json(self) -> dict[str, list[float]]:
+        """Return it as plain data, as relation files have it."""
+        return {"constant": self.constant.tolist(), "rate": self.rate.tolist()}
+
     def in_words(self) -> str:
         """Return what is taken off, joint by joint.
 

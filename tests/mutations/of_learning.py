@@ -78,6 +78,26 @@ RELATIONS = (
         "relations that move a joint with a spring do not hold of the measured torque",
     ),
     Mutation(
+        "verify/relations/verify_relation.py",
+        "relation = relation.of_measured(None)",
+        "relation = relation",
+        (
+            "tests/isotorque/runs/from_data/test_chain_from_data.py"
+            "::test_a_robot_file_judges_gravity_alone",
+        ),
+        "a robot file has nothing beside gravity",
+    ),
+    Mutation(
+        "learning/learners/rigid/structure/beside_chain.py",
+        "springs_held = np.diag(fit.chain.correction.rate)",
+        "springs_held = np.zeros((samples.n, samples.n))",
+        (
+            "tests/learning/relations/identification/test_chain_identification.py"
+            "::test_a_spring_on_a_joint_without_gravity_leaves_no_room_for_errors_of_its_angle",
+        ),
+        "the rate of a spring takes up errors of its angle",
+    ),
+    Mutation(
         "learning/export/from_learner.py",
         "if not chain.coefficient(ColumnShape.SPRING).any():",
         "if True:",
@@ -106,7 +126,7 @@ RELATIONS = (
     ),
     Mutation(
         "learning/statistics/causes/selection.py",
-        "log_p = by_noise if is_adequate(model, fit) else max(by_noise, log_p)",
+        "log_p = by_noise if explained else max(by_noise, log_p)",
         "log_p = by_noise",
         (
             "tests/learning/relations/test_lack_of_fit.py"

@@ -219,10 +219,7 @@ def _entry(relation: SymmetryRelation) -> dict[str, Any]:
         "bound": [x if math.isfinite(x) else None for x in relation.bound.tolist()],
     }
     found = relation.correction
-    if found is None:
-        return entry
-    beside = {"constant": found.constant.tolist(), "rate": found.rate.tolist()}
-    return entry | {"correction": beside}
+    return entry if found is None else entry | {"correction": found.as_json()}
 
 
 def write_relations(path: str | Path, document: dict[str, Any]) -> None:

@@ -292,8 +292,7 @@ def chain_relations(
     group = symmetries.group
     many, extra = group.order > MOST_LISTED, None
     if symmetries.correction is not None:
-        held = symmetries.correction
-        beside = {"correction": {"constant": held.constant.tolist(), "rate": held.rate.tolist()}}
+        beside = {"correction": symmetries.correction.as_json()}
         extra = [beside] * len(group.generators if many else group.listed())
     return relations_document(group, joint_names, generators=many, extra=extra) | {
         "method": "rigid chain",

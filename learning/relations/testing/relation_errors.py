@@ -275,9 +275,8 @@ class _Waves:
         self.examined = examined
         n, samples = len(examined.fit.offsets), examined.fit.whitened
         self._q = _points(n)
-        left = samples.residual.reshape(len(samples.q), -1, 1)
         self.residual = np.zeros((len(samples.q), n))
-        self.residual[:, samples.joints] = np.linalg.solve(samples.whitening, left)[:, :, 0]
+        self.residual[:, samples.joints] = samples.torques(samples.residual)
         self.freedom = max(1.0, len(samples.q) - len(samples.root) / len(samples.joints))
 
     def errors(

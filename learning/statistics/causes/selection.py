@@ -230,12 +230,14 @@ def _scored(
     # every joint has a level of noise of its own: it is known with its own degrees of freedom
     own = max(left / model.q.shape[1], 1.0)
     log_p = float(stats.f.logsf((without - cost) / df / (cost / left), df, own))
-    ratio = _ratio_by_joint(model, null, fit)
     if model.noise_known:
         ratio = without - cost
         by_noise = float(stats.chi2.logsf(max(ratio, 0.0), df))
         # what is left is noise as well where it is more than was stated
-        log_p = by_noise if is_adequate(model, fit) else max(by_noise, log_p)
+        explained = stats.chi2.sf(cost, left) > ADEQUATE
+        log_p = by_noise if explained else max(by_noise, log_p)
+    else:
+        ratio = _ratio_by_joint(model, null, fit)
     if not np.isfinite(log_p):
         log_p = -ratio / 2.0
     score = ratio - df * float(np.log(model.q.size))

@@ -41,7 +41,7 @@ def beyond_scatter(fit: ExtendedFit, poses: Poses, rows: Array) -> Array:
     if not poses.repeated or m != poses.count:
         return np.zeros(n)
     deviation, freedom = poses.spread(rows)
-    residual, own = _unspent(fit), max(fit.spare / n, 0.5)
+    residual, own = unspent(fit), max(fit.spare / n, 0.5)
     found = np.sqrt(np.mean(residual**2, axis=0))
     for joint, sigma in enumerate(deviation):
         weighted = float((residual[:, joint] ** 2 @ poses.rows) / m)
@@ -63,9 +63,9 @@ def beyond_stated_noise(fit: ExtendedFit) -> Array:
     """
     if tail_probability(fit.cost, fit.spare, np.inf) > SIGNIFICANCE:
         return np.zeros(fit.q.shape[1])
-    return np.asarray(np.sqrt(np.mean(_unspent(fit) ** 2, axis=0)))
+    return np.asarray(np.sqrt(np.mean(unspent(fit) ** 2, axis=0)))
 
 
-def _unspent(fit: ExtendedFit) -> Array:
-    """Residuals (m, n) [N m], as large as if no degrees of freedom had been spent."""
+def unspent(fit: ExtendedFit) -> Array:
+    """Return residuals (m, n) [N m], as large as if no degrees of freedom had been spent."""
     return fit.rest / np.sqrt(fit.spare / fit.torque.size)

@@ -195,7 +195,6 @@ def _by_pose_and_side(
     if not poses.repeated:
         return q, tau, sides, weight
     split = poses if sides is None else poses.split(sides)
-    mean = split.means(weight[:, None])
-    torques = split.means(tau * weight[:, None]) / mean
+    torques, mean = split.means(tau, weight), split.means(weight[:, None])
     at = poses.configurations(q)[poses.label[split.first]]
     return at, torques, None if sides is None else sides[split.first], mean[:, 0]

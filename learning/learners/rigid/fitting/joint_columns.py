@@ -64,11 +64,6 @@ class JointColumn:
         return np.asarray(SLOPES[self.shape](q[:, self.joint]))
 
 
-def offset_columns(joints: int) -> tuple[JointColumn, ...]:
-    """An unknown constant offset at every joint."""
-    return columns_of(joints, ColumnShape.OFFSET)
-
-
 def columns_of(joints: int, *shapes: ColumnShape) -> tuple[JointColumn, ...]:
     """A column of each of these shapes at every joint."""
     return tuple(JointColumn(j, shape) for shape in shapes for j in range(joints))
@@ -79,7 +74,7 @@ def features(columns: Sequence[JointColumn], q: Array) -> Array:
 
     Examples
     --------
-    >>> features(offset_columns(2), np.zeros((1, 2))).tolist()
+    >>> features(columns_of(2, ColumnShape.OFFSET), np.zeros((1, 2))).tolist()
     [[[1.0, 0.0], [0.0, 1.0]]]
     """
     result = np.zeros((*q.shape, len(columns)))

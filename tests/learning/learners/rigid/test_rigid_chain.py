@@ -201,6 +201,8 @@ def test_a_sign_is_a_gain():
         ({"parents": [-1]}, "parents"),
         ({"torque_noise": -1.0}, "torque_noise"),
         ({"angle_noise": [0.1, 0.1]}, "angle_noise"),
+        ({"unknown_offsets": [True, False]}, "unknown_offsets"),
+        ({"unknown_springs": [True, False]}, "unknown_springs"),
         ({"max_starts": 0}, "max_starts"),
         ({"window": 0.5}, "window"),
         ({"known_gains": [1.0, 1.0, 1.0]}, "known_gains"),

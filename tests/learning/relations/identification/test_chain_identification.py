@@ -144,6 +144,18 @@ def test_springs_are_taken_off_and_relations_hold_beside_them(name, seed):
         assert relation.correction.rate[joint] == pytest.approx(0.4, abs=0.05)
 
 
+def test_a_spring_on_a_joint_without_gravity_leaves_no_room_for_errors_of_its_angle():
+    """The rate takes them up: bounds were larger than all torques of the joint."""
+    gravity = GravityModel(load_robot("ur5"))
+    rng = np.random.default_rng(1)
+    q = rng.uniform(-2.5, 2.5, (40, 6))
+    tau = gravity.torque(q) + beside_gravity("spring", q, 0, 1.0)
+    found = identify_by_chain(q, tau + 0.02 * rng.normal(size=q.shape))
+    assert found.chain.chain_.correction.rate[0] == pytest.approx(1.0, abs=0.05)
+    for relation in (*found.group, *found.corrected):
+        assert relation.bound[0] < 0.5
+
+
 def test_what_a_chain_was_told_of_is_taken_off_too():
     gravity = GravityModel(load_robot("3r"))
     rng = np.random.default_rng(0)

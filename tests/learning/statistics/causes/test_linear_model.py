@@ -15,6 +15,7 @@ from isotorque.learning.statistics.causes.extended_fit import ExtendedFit
 from isotorque.learning.statistics.causes.extension import Extension, Kind, Shape, Term
 from isotorque.learning.statistics.causes.linear_model import LinearModel
 from isotorque.learning.statistics.causes.selection import selected
+from tests.learning.statistics.causes.simulated_causes import torque_beside
 
 seeds = st.integers(0, 2**32 - 1)
 POSES, JOINTS = 60, 2
@@ -62,17 +63,7 @@ def changed(term, size):
         elif term.shape is Shape.LOAD:
             measured[j:] += size * torque_features(FREQUENCIES, q[j:]) @ coefficients[::-1]
         else:
-            angle = q[:, j]
-            measured[:, j] += (
-                size
-                * {
-                    Shape.CONSTANT: np.ones(POSES),
-                    Shape.ANGLE: angle,
-                    Shape.COSINE: np.cos(2.0 * angle),
-                    Shape.SINE: np.sin(2.0 * angle),
-                    Shape.DIRECTION: directions[:, j],
-                }[term.shape]
-            )
+            measured[:, j] += size * torque_beside(term.shape, q[:, j], directions[:, j])
         return read, measured
 
     return change

@@ -11,6 +11,7 @@ from isotorque.learning.learners.rigid.causes.extended_chain import ExtendedChai
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.statistics.causes.extension import Shape, Term
 from tests.learning.learners.rigid.random_chains import random_chain, random_poses
+from tests.learning.statistics.causes.simulated_causes import torque_beside
 
 POSES, JOINTS = 40, 3
 LINEAR = (Shape.CONSTANT, Shape.ANGLE, Shape.COSINE, Shape.SINE, Shape.DIRECTION)
@@ -43,17 +44,7 @@ def measured(samples, term, size, directions, chain, load):
     elif term.shape is Shape.LOAD:
         tau[j:] = chain.with_levers(chain.levers + load).torque(q[j:])
     else:
-        angle = q[:, j]
-        tau[:, j] += (
-            size
-            * {
-                Shape.CONSTANT: np.ones(POSES),
-                Shape.ANGLE: angle,
-                Shape.COSINE: np.cos(2.0 * angle),
-                Shape.SINE: np.sin(2.0 * angle),
-                Shape.DIRECTION: directions[:, j],
-            }[term.shape]
-        )
+        tau[:, j] += size * torque_beside(term.shape, q[:, j], directions[:, j])
     return ChainSamples(q, tau, samples.torque_noise, samples.angle_noise, samples.weights)
 
 

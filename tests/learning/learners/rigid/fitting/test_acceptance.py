@@ -14,7 +14,7 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import serial
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel, SearchedChain
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
-from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape, columns_of
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
@@ -28,7 +28,7 @@ def fitted(q, torque, *, noise=None, angles=0.0, seed=0, free=False, parents=Non
         serial(n) if parents is None else np.array(parents),
         np.ones(n),
         np.full(n, free),
-        offset_columns(n) if free else (),
+        columns_of(n, ColumnShape.OFFSET) if free else (),
     )
     return fit_chain(
         samples, model, np.random.default_rng(seed), noise_known=noise is not None, starts=starts

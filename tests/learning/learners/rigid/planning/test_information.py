@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape, columns_of
 from isotorque.learning.learners.rigid.planning.information import (
     Information,
     identifiable_count,
@@ -52,7 +52,10 @@ def test_counts_are_those_of_the_theory(n, kind, seed):
 def test_gains_and_offsets_add_their_numbers(n):
     chain = random_chain(np.random.default_rng(n), n)
     offsets = type(chain).of(
-        chain.rotations, chain.levers, columns=offset_columns(n), coefficients=np.zeros(n)
+        chain.rotations,
+        chain.levers,
+        columns=columns_of(n, ColumnShape.OFFSET),
+        coefficients=np.zeros(n),
     )
     assert identifiable_count(offsets, parameter_mask(n, columns=n)) == 5 * n - 1
     mask = parameter_mask(n, free_gains=np.ones(n, bool), columns=n)

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
-from isotorque.learning.learners.rigid.fitting.joint_columns import offset_columns
+from isotorque.learning.learners.rigid.fitting.joint_columns import ColumnShape, columns_of
 from isotorque.learning.learners.rigid.planning.information import (
     identifiable_count,
     parameter_mask,
@@ -16,7 +16,7 @@ from tests.learning.learners.rigid.random_chains import random_chain
 
 @given(st.integers(1, 8), st.booleans(), st.booleans())
 def test_equations_exceed_parameters_and_one_pose_less_leaves_nothing_to_check(n, gains, offsets):
-    columns = offset_columns(n) if offsets else ()
+    columns = columns_of(n, ColumnShape.OFFSET) if offsets else ()
     model = ChainModel(np.arange(-1, n - 1), np.ones(n), np.full(n, gains), columns)
     poses = poses_needed(model)
     assert n * poses > most_parameters(model)
