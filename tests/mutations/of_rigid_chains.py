@@ -223,7 +223,7 @@ MUTATIONS = (
     ),
     Mutation(
         "learning/statistics/causes/candidates.py",
-        "loaded = size > np.maximum(CARRYING * noise, CARRYING_SHARE * size.max(initial=0.0))",
+        "loaded &= size > CARRYING * noise",
         "loaded = size > -1.0",
         ("tests/learning/statistics/causes/test_candidates.py",),
         "gains of joints without torque turn noise into features",

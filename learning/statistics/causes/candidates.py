@@ -14,8 +14,9 @@ from isotorque.learning.statistics.causes.extension import Extension, Kind, Shap
 Array = NDArray[np.float64]
 
 CARRYING, CARRYING_SHARE = 4.0, 0.01
-"""Gain and compliance are looked for where the torque (RMS) is so many times its noise, and this
-share of that of the most loaded joint: elsewhere they turn noise into a feature that fits it."""
+"""Gain and compliance are looked for where the torque (RMS) is so many times its noise, or what a
+fit leaves that explains nothing, or else this share of that of the most loaded joint: elsewhere
+they turn noise into a feature that fits it."""
 FELT = 0.02
 """Angle scales are looked for where a radian changes torques by this share of the largest (RMS)."""
 TWO_SIDED = 0.999
@@ -42,7 +43,9 @@ def candidates(model: ExtensibleModel[F], fit: F, explained: bool) -> list[Exten
     n = model.q.shape[1]
     size = np.sqrt(np.mean(model.torque**2, axis=0))
     noise = model.noise if explained or model.noise_known else np.zeros(n)
-    loaded = size > np.maximum(CARRYING * noise, CARRYING_SHARE * size.max(initial=0.0))
+    left = noise if explained else np.sqrt(np.mean(fit.rest**2, axis=0))
+    loaded = (size > CARRYING * left) | (size > CARRYING_SHARE * size.max(initial=0.0))
+    loaded &= size > CARRYING * noise
     felt = np.sqrt(np.mean(fit.stiffness**2, axis=0)).max(axis=0) > FELT * size.max(initial=0.0)
     sided = np.zeros(n, dtype=bool)
     if model.directions is not None:

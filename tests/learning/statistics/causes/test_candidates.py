@@ -8,7 +8,11 @@ from isotorque.learning.learners.rigid.causes.extensible_chain import Extensible
 from isotorque.learning.learners.rigid.fitting.chain_parameters import serial
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
-from isotorque.learning.statistics.causes.candidates import candidates, explained_to_first_order
+from isotorque.learning.statistics.causes.candidates import (
+    CARRYING_SHARE,
+    candidates,
+    explained_to_first_order,
+)
 from isotorque.learning.statistics.causes.extension import Extension, Kind
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
@@ -16,13 +20,13 @@ from isotorque.symbolic.robots.load_robot import load_robot
 NOISE = 0.05
 
 
-def model_of(robot, poses, seed, directions=None, change=0.0):
+def model_of(robot, poses, seed, directions=None, change=0.0, noise=NOISE):
     gravity = GravityModel(load_robot(robot))
     rng = np.random.default_rng(seed)
     q = rng.uniform(-2.0, 2.0, (poses, gravity.n))
-    tau = gravity.torque(q) + NOISE * rng.normal(size=q.shape) + change
+    tau = gravity.torque(q) + noise * rng.normal(size=q.shape) + change
     n = gravity.n
-    samples = ChainSamples(q, tau, np.full(n, NOISE), np.zeros(n), np.ones(poses))
+    samples = ChainSamples(q, tau, np.full(n, noise), np.zeros(n), np.ones(poses))
     family = ChainModel(serial(n), np.ones(n), np.zeros(n, dtype=bool), ())
     return ExtensibleChain(samples, family, directions, True, True, np.random.default_rng(seed))
 
@@ -38,6 +42,16 @@ def test_gains_and_compliances_need_a_torque_that_stands_out():
     assert {j for kind, j in found if kind is Kind.COMPLIANCE} == {1, 2}
     assert {j for kind, j in found if kind is Kind.SCALE} == {1, 2}
     assert {j for kind, j in found if kind is Kind.OFFSET} == {*range(6), None}
+
+
+def test_small_torques_far_above_their_noise_have_gains_too():
+    """Wrist 1 of a UR5 holds less than a hundredth of what its shoulder holds."""
+    model = model_of("ur5", 40, 0, noise=0.01)
+    fit = model.alone()
+    size = np.sqrt(np.mean(model.torque**2, axis=0))
+    assert 4.0 * model.noise[3] < size[3] < CARRYING_SHARE * size.max()
+    gains = {j for kind, j in kinds_by_joint(candidates(model, fit, True)) if kind is Kind.GAIN}
+    assert {1, 2, 3} <= gains
 
 
 def test_friction_needs_approaches_from_both_sides():
