@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from isotorque.learning.export.c_export import c_source as c_source
     from isotorque.learning.export.casadi_export import casadi_function as casadi_function
     from isotorque.learning.export.from_learner import torque_form as torque_form
-    from isotorque.learning.files.csv_samples import StaticSamples as StaticSamples
     from isotorque.learning.files.csv_samples import read_csv as read_csv
     from isotorque.learning.files.saved_models import SavedModel as SavedModel
     from isotorque.learning.files.saved_models import load_model as load_model
     from isotorque.learning.files.saved_models import save_model as save_model
+    from isotorque.learning.files.static_samples import StaticSamples as StaticSamples
     from isotorque.learning.learners.cross_validation import cross_validate as cross_validate
     from isotorque.learning.learners.gaussian_process.symmetric_gaussian_process import (
         SymmetricGaussianProcess as SymmetricGaussianProcess,
@@ -133,7 +133,7 @@ _HOME = {
     "Settled": "learning.arm",
     "SimulatedArm": "learning.simulator.simulated_arm",
     "StaticRegressor": "learning.learners.rigid.static_regressor",
-    "StaticSamples": "learning.files.csv_samples",
+    "StaticSamples": "learning.files.static_samples",
     "StaticTorqueSet": "learning.static_torques.static_torque_set",
     "SupportedGroup": "learning.relations.testing.supported_group",
     "SymmetricGaussianProcess": "learning.learners.gaussian_process.symmetric_gaussian_process",

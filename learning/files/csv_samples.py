@@ -6,12 +6,11 @@ import csv
 import math
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from isotorque.learning.arm import Vector
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.symbolic.common.errors import InputError
 
 LARGEST = 1e9
@@ -19,22 +18,6 @@ LARGEST = 1e9
 behind the point that says where the joint is."""
 SMALLEST_TORQUE = 1e-12
 """If no torque is larger [N m], nothing was measured: this is below the noise of any sensor."""
-
-
-@dataclass(frozen=True, eq=False)
-class StaticSamples:
-    """Configurations of an arm and the torques that hold them.
-
-    Attributes
-    ----------
-    q : (m, n) array
-        Joint angles [rad] (positions [m] of prismatic joints), one row per sample.
-    tau : (m, n) array
-        Torques [N m] (forces [N] of prismatic joints) that hold the arm there at rest.
-    """
-
-    q: Vector
-    tau: Vector
 
 
 def read_csv(path: str | Path, joint_names: Sequence[str]) -> StaticSamples:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from isotorque.learning.arm import Settled
-from isotorque.learning.files.csv_samples import StaticSamples
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.recordings.recorded_command import CommandKind, row_of, to_bytes
 from isotorque.learning.recordings.recording import Recording
 from isotorque.learning.recordings.recording_error import RecordingError

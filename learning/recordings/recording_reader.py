@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.arm import OutcomeKind, Playback, Vector
-from isotorque.learning.files.csv_samples import StaticSamples
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.recordings.database.damage_check import check_content
 from isotorque.learning.recordings.database.queries import (
     RecordedPart,
@@ -28,7 +28,7 @@ from isotorque.learning.recordings.recorded_command import FLOATS, RecordedComma
 from isotorque.learning.recordings.recording_error import RecordingError, clear_errors
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class SettledSamples(StaticSamples):
     """Settled samples of a recording: m pairs of a configuration and the torque that holds it.
 

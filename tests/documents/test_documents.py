@@ -12,7 +12,8 @@ import pytest
 import typer
 
 from isotorque.cli.main import app, status
-from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.learning.files.csv_samples import write_csv
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
-from isotorque.learning.files.csv_samples import StaticSamples, read_csv, write_csv
+from isotorque.learning.files.csv_samples import read_csv, write_csv
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.files.csv_samples import StaticSamples, joint_names_of, read_csv
+from isotorque.learning.files.csv_samples import joint_names_of, read_csv
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.fitting.gains import GainGroup
 from isotorque.learning.learners.rigid.fitting.known_load import gain_from_load

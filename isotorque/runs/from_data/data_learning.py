@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.files.csv_samples import StaticSamples, read_csv
+from isotorque.learning.files.csv_samples import read_csv
 from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation
 from isotorque.learning.learners.registry import LearningTask
 from isotorque.learning.recordings.recorded_data import record_samples

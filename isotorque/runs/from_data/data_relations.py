@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.files.csv_samples import StaticSamples
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation, cross_validate
 from isotorque.learning.learners.registry import LearningTask, learner_by_name
 from isotorque.learning.learners.rigid.fitting.fit_status import NotAccepted

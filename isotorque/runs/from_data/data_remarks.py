@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from isotorque.learning.files.csv_samples import StaticSamples
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation
 from isotorque.learning.statistics.constant_torques import OR_FRICTION
 from isotorque.symbolic.robots.load_robot import Robot

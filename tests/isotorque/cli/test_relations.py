@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
-from isotorque.learning.files.csv_samples import StaticSamples
 from isotorque.learning.files.run_info import RunInfo
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.recordings.recorded_data import record_samples
 from isotorque.learning.recordings.recording import Recording
 from isotorque.symbolic.level_sets.level_set import level_set

@@ -10,7 +10,8 @@ import pytest
 
 from benchmarks.shared.small_arms import SmallArm, SmallJoint, arm_text
 from isotorque.cli.main import status
-from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.learning.files.csv_samples import write_csv
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.runs.experiment import run_experiment
 from isotorque.runs.options.run_options import ArmOptions, RunOptions
 from isotorque.symbolic.common.errors import InputError

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
-from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.learning.files.csv_samples import write_csv
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 

@@ -7,8 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.learning.files.csv_samples import write_csv
 from isotorque.learning.files.saved_models import SavedModel, save_model
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.runs.verification import FreshData, verify_path

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from isotorque.learning.files.csv_samples import StaticSamples, joint_names_of, read_csv, write_csv
+from isotorque.learning.files.csv_samples import joint_names_of, read_csv, write_csv
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.symbolic.common.errors import InputError
 
 MEASURED = st.floats(-1e9, 1e9)

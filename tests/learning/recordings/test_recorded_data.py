@@ -5,7 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from isotorque.learning.files.csv_samples import StaticSamples, read_csv, write_csv
+from isotorque.learning.files.csv_samples import read_csv, write_csv
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.recordings.recorded_arm import RecordedArm
 from isotorque.learning.recordings.recorded_data import record_samples
 from isotorque.learning.recordings.recording import Recording

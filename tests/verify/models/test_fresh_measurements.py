@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from isotorque.learning.files.csv_samples import StaticSamples
 from isotorque.learning.files.saved_models import SavedModel
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.learning.statistics.fresh_errors import LEAST_POSES, RESOLVED

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from isotorque.learning.files.csv_samples import StaticSamples
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.groups.correction import Correction

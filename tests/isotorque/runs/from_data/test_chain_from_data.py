@@ -9,8 +9,9 @@ import pytest
 from isotorque.cli.main import status
 from isotorque.learning.export.forms.torque_form import evaluate
 from isotorque.learning.export.from_learner import torque_form
-from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.learning.files.csv_samples import write_csv
 from isotorque.learning.files.saved_models import load_model
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.symbolic.gravity.gravity_model import GravityModel
 from isotorque.symbolic.robots.load_robot import load_robot
 from tests.learning.export.compiled_source import build, call, needs_cc

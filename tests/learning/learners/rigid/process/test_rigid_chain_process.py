@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from isotorque.cli.main import status
-from isotorque.learning.files.csv_samples import StaticSamples, write_csv
+from isotorque.learning.files.csv_samples import write_csv
 from isotorque.learning.files.saved_models import SavedModel, load_model, save_model
+from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus, NotAccepted
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
