@@ -89,7 +89,11 @@ def _static_regressor(learner: StaticRegressor) -> Waves:
         raise InputError("export", "number of joints", n, f"at most {MOST_JOINTS}")
     angles = np.meshgrid(*[2 * np.pi / 3 * np.arange(3)] * n, indexing="ij")
     q = np.stack(angles, axis=-1).reshape(-1, n)
-    return Waves.of_samples_on_grid(learner.predict(q).reshape(*[3] * n, n))
+    beside = learner.beside_
+    gravity = beside.gains * learner.gravity(q)
+    waves = Waves.of_samples_on_grid(gravity.reshape(*[3] * n, n))
+    constant, springs, *twice = beside.coefficients.T
+    return waves.with_constants(constant).with_own_angles(np.stack(twice, axis=1), springs)
 
 
 def _network(learner: FeedForwardNetwork) -> TanhUnits:

@@ -48,6 +48,23 @@ def checked_configurations(learner: Any, X: Any, *, first: bool) -> Array:
     return np.ascontiguousarray(X)
 
 
+def checked_directions(directions: Any, shape: tuple[int, ...]) -> Array | None:
+    """Signs (m, n) of the last motion of every joint before the arm came to rest; None if unknown.
+
+    Raises
+    ------
+    InputError
+        If there is not one finite number for every angle.
+    """
+    if directions is None:
+        return None
+    sides = np.sign(np.asarray(directions, dtype=float))
+    if sides.shape != shape or not np.isfinite(sides).all():
+        accepted = f"a sign for every angle, shape {shape}"
+        raise InputError("samples", "directions", f"shape {sides.shape}", accepted)
+    return sides
+
+
 def checked_samples(
     learner: Any, X: Any, y: Any, sample_weight: Any = None, *, first: bool
 ) -> tuple[Array, Array, Array]:

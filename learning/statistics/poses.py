@@ -181,31 +181,41 @@ def by_pose(q: Array, tau: Array) -> tuple[Poses, Array, Array]:
     return poses, poses.configurations(q), poses.means(tau)
 
 
-def weighed_by_pose(q: Array, tau: Array, weight: Array) -> tuple[Array, Array, Array]:
-    """One sample per pose for least squares: weighted means, with the weights of the rows summed.
+def by_pose_and_side(
+    q: Array, tau: Array, sides: Array | None, weight: Array, *, summed: bool = True
+) -> tuple[Array, Array, Array | None, Array]:
+    """One sample per pose, and per side from which it was reached: weighted means.
 
-    What is fitted is what the rows would give; what is left over counts by pose.
+    What is fitted to them is what the rows would give; what is left over counts by pose.
 
     Parameters
     ----------
     q, tau : (N, n), (N, k) arrays
         Rows [rad], [N m].
+    sides : (N, n) array or None
+        Signs of the last motion of every joint; None where not known.
     weight : (N,) array
         Of the squared errors of the rows.
+    summed : bool
+        Whether the weights of a sample's rows are summed; otherwise their mean counts.
 
     Examples
     --------
     >>> q, tau, weight = np.array([[0.5], [0.5]]), np.array([[1.0], [4.0]]), np.array([2.0, 1.0])
-    >>> [x.tolist() for x in weighed_by_pose(q, tau, weight)]
+    >>> [x.tolist() for x in by_pose_and_side(q, tau, None, weight) if x is not None]
     [[[0.5]], [[2.0]], [3.0]]
+    >>> [len(x) for x in by_pose_and_side(q, tau, np.array([[1.0], [-1.0]]), weight)]
+    [2, 2, 2, 2]
     """
     poses = group_poses(q)
     if not poses.repeated:
-        return q, tau, weight
-    first = q[poses.first]
-    moved = poses.means(wrap(q - first[poses.label]), weight)
-    total = np.bincount(poses.label, weight, poses.count).astype(float)
-    return first + moved, poses.means(tau, weight), total
+        return q, tau, sides, weight
+    split = poses if sides is None else poses.split(sides)
+    first = q[split.first]
+    at = first + split.means(wrap(q - first[split.label]), weight)
+    total = np.bincount(split.label, weight, split.count).astype(float)
+    total = total if summed else total / split.rows
+    return at, split.means(tau, weight), None if sides is None else sides[split.first], total
 
 
 def _repeated(places: Array, box: Array, exact: Labels) -> Labels:

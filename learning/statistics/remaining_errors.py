@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from isotorque.learning.statistics.constant_torques import constant_torques, constants_in_words
-from isotorque.learning.statistics.fresh_errors import FreshErrors
+from isotorque.learning.statistics.causes.cause import Cause, causes_of
+from isotorque.learning.statistics.causes.cause_words import causes_in_words
+from isotorque.learning.statistics.causes.extension import Kind
+from isotorque.learning.statistics.causes.linear_model import ADDING, LinearModel
+from isotorque.learning.statistics.causes.selection import selected
+from isotorque.learning.statistics.fresh_errors import LEAST_POSES, FreshErrors
 
 Array = NDArray[np.float64]
 
@@ -14,8 +18,13 @@ DEVIATIONS = 3.0
 """A model's own standard error explains errors of so many times its size."""
 
 
-def explained(found: FreshErrors, standard_error: Array | None = None) -> tuple[str, ...]:
-    """Say what explains the errors of a model at fresh poses: noise, its own errors, constants.
+def explained(
+    found: FreshErrors,
+    standard_error: Array | None = None,
+    q: Array | None = None,
+    directions: Array | None = None,
+) -> tuple[str, ...]:
+    """Say what explains the errors of a model at fresh poses: noise, its own errors, causes.
 
     Parameters
     ----------
@@ -24,6 +33,10 @@ def explained(found: FreshErrors, standard_error: Array | None = None) -> tuple[
     standard_error : (P, n) array or None
         Of the model's predictions at the poses [N m], infinite where its data leave them open;
         None where it states none.
+    q : (P, n) array, optional
+        The poses [rad]: springs, cables and friction are looked for, too; without them constants.
+    directions : (P, n) array, optional
+        Signs of the last motion of every joint before the arm came to rest.
 
     Returns
     -------
@@ -45,26 +58,39 @@ def explained(found: FreshErrors, standard_error: Array | None = None) -> tuple[
     """
     by_noise = found.within(np.zeros(len(found.tolerance)))
     said = [_noise_in_words(found, by_noise, standard_error)]
-    joints = constants(found)
-    if len(joints):
-        named = constants_in_words(joints, *_means(found))
-        left = np.std(found.errors[:, joints], axis=0)
+    causes, left = _causes(found, q, directions)
+    if causes:
         sizes = ", ".join(f"{x:.3g}" for x in left)
-        said.append(f"the errors show {named}; without it the RMSE is {sizes} N m")
+        said.append(
+            f"the errors show {causes_in_words(causes)}; without it the RMSE is {sizes} N m"
+        )
     return tuple(part for part in said if part)
 
 
 def constants(found: FreshErrors) -> NDArray[np.intp]:
     """Joints, from 0 on, whose mean error is a significant constant."""
-    if not found.errors.any():
-        return np.zeros(0, dtype=np.intp)
-    nothing = np.zeros((*found.errors.shape, 0))
-    return constant_torques(nothing, found.errors, np.ones(found.poses))
+    joints = {cause.joint for cause in _causes(found, None, None)[0] if cause.joint is not None}
+    return np.array(sorted(joints), dtype=np.intp)
 
 
-def _means(found: FreshErrors) -> tuple[Array, Array]:
-    spread = np.std(found.errors, axis=0, ddof=1)
-    return found.errors.mean(axis=0), spread / np.sqrt(found.poses)
+def _causes(
+    found: FreshErrors, q: Array | None, directions: Array | None
+) -> tuple[tuple[Cause, ...], Array]:
+    """What errors show, and the RMSE without it of the joints concerned [N m]."""
+    errors, n = found.errors, found.errors.shape[1]
+    if not errors.any() or found.poses < LEAST_POSES:
+        return (), np.zeros(0)
+    model = LinearModel.of(
+        np.zeros(errors.shape) if q is None else q,
+        errors,
+        np.zeros((*errors.shape, 0)),
+        directions=directions,
+        kinds=(Kind.OFFSET,) if q is None else (*ADDING, Kind.FRICTION),
+    )
+    selection = selected(model, model.alone())
+    causes = causes_of(selection)
+    joints = sorted({j for cause in causes for j in cause.joints(n)})
+    return causes, np.sqrt(np.mean(selection.fit.rest[:, joints] ** 2, axis=0))
 
 
 def _noise_in_words(

@@ -336,7 +336,7 @@ STATISTICS = (
         "nothing is learned where a gate was not passed",
     ),
     Mutation(
-        "learning/statistics/constant_torques.py",
+        "learning/statistics/causes/cause_words.py",
         '", or friction approached from one side:',
         '", and always there:',
         ("tests/learning/relations/test_lack_of_fit.py",),

@@ -222,6 +222,20 @@ MUTATIONS = (
         "a model alone is fitted again from the chains of the best candidates",
     ),
     Mutation(
+        "learning/statistics/causes/linear_model.py",
+        "if self.stiffness_of is None:",
+        "if True:",
+        ("tests/learning/learners/rigid/causes/test_beside_gravity.py",),
+        "errors of angles are told from constants beside a regressor",
+    ),
+    Mutation(
+        "learning/learners/rigid/causes/beside_gravity.py",
+        "np.where(np.arange(len(q))[:, None, None] < term.place, 0.0, own)",
+        "0.0 * own",
+        ("tests/learning/learners/rigid/causes/test_beside_gravity.py",),
+        "a model is of the arm before its payload changed",
+    ),
+    Mutation(
         "learning/statistics/causes/candidates.py",
         "loaded &= size > CARRYING * noise",
         "loaded = size > -1.0",

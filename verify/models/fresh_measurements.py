@@ -217,7 +217,7 @@ def verify_on_measurements(
     known = _noise(saved.learner, fresh, errors, noise, predict)
     found = errors_by_pose(errors, fresh.poses, known, allowed)
     outside = _outside(saved, fresh.q)
-    left = explained(found, standard_errors(saved.learner, fresh.q))
+    left = explained(found, standard_errors(saved.learner, fresh.q), fresh.q)
     remarks = [
         *_joints(found, fresh),
         _noise_in_words(known),

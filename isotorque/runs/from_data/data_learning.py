@@ -22,7 +22,7 @@ from isotorque.runs.experiment import Progress
 from isotorque.runs.from_data.data_relations import RelationsOfData
 from isotorque.runs.from_data.data_remarks import (
     analytic_remarks,
-    constant_remarks,
+    cause_remarks,
     outlier_remarks,
 )
 from isotorque.runs.lattice_learning import fitted_with_curve
@@ -170,7 +170,7 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
         curve,
         (
             *found.remarks,
-            *constant_remarks(learner, robot),
+            *cause_remarks(learner, robot),
             *([beyond.remark] if beyond.remark else []),
             *outlier_remarks(tried, options.drop_outliers, WORST),
             *analytic_remarks(compared, tried, samples, robot),

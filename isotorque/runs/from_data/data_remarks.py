@@ -8,12 +8,18 @@ import numpy as np
 
 from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation
-from isotorque.learning.statistics.constant_torques import OR_FRICTION
+from isotorque.learning.statistics.causes.cause_words import OR_FRICTION, causes_in_words
+from isotorque.learning.statistics.causes.extension import Kind
 from isotorque.symbolic.robots.load_robot import Robot
 from isotorque.verify.models.measured_torques import Disagreement, misread_units
 
 CONSTANT = 2.0
 """Times that constants of the joints must lower a disagreement to be told."""
+PREDICTED = {Kind.OFFSET, Kind.GAIN, Kind.SIGN, Kind.SPRING, Kind.CABLE}
+NOT_PREDICTED = (
+    "the model predicts what sensors show at rest of it (friction, errors of angles and a changed "
+    "payload are no part of the model)"
+)
 SYSTEMATIC = 2.0
 """Times the held-out error from which a disagreement is no accident of single samples."""
 
@@ -78,8 +84,21 @@ def analytic_remarks(
     return tuple(remarks)
 
 
-def constant_remarks(learner: Any, robot: Robot) -> tuple[str, ...]:
-    """Say which constant torques a model contains: sensors show them, gravity has none."""
+def cause_remarks(learner: Any, robot: Robot) -> tuple[str, ...]:
+    """Say what a model contains beside gravity, or what its samples show that is no part of it."""
+    causes = getattr(learner, "causes_", None)
+    if causes is None:
+        return _constants(learner, robot)
+    if not causes:
+        return ()
+    said = causes_in_words(causes, robot.joint_names)
+    held = {cause.kind for cause in causes} <= PREDICTED
+    part = "the model contains it and predicts what sensors show" if held else NOT_PREDICTED
+    return (f"beside gravity the data show {said}; {part}",)
+
+
+def _constants(learner: Any, robot: Robot) -> tuple[str, ...]:
+    """Say which constants a model contains whose causes have no names."""
     offsets = np.asarray(getattr(learner, "offsets_", np.zeros(robot.n)))
     found = [
         f"{offsets[j]:+.3g} N m on {robot.joint_names[j]}" for j in np.flatnonzero(offsets).tolist()

@@ -1,8 +1,8 @@
-"""Torques as sums of sines and cosines."""
+"""Torques as sums of sines and cosines, with springs at the joints."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Waves:
-    """``tau_i = sum over k of c_ki cos(k.q) + s_ki sin(k.q)``.
+    """``tau_i = sum over k of c_ki cos(k.q) + s_ki sin(k.q)``, and r_i q_i where there are springs.
 
     Attributes
     ----------
@@ -24,14 +24,19 @@ class Waves:
         Rows k.
     cos, sin : (m, n) arrays
         c and s [N m].
+    springs : (n,) array or None
+        r [N m/rad].
     """
 
     frequencies: NDArray[np.int64]
     cos: Array
     sin: Array
+    springs: Array | None = None
 
     KIND: ClassVar[str] = "waves"
-    FORMULA: ClassVar[str] = "tau = cos^T cos(frequencies q) + sin^T sin(frequencies q)"
+    FORMULA: ClassVar[str] = (
+        "tau = cos^T cos(frequencies q) + sin^T sin(frequencies q) + springs q (where given)"
+    )
 
     @property
     def joints(self) -> int:
@@ -45,19 +50,22 @@ class Waves:
 
     def torque(self, space: Space, q: Any) -> Any:
         """Torques (n, 1) [N m] at a configuration (n, 1) [rad]."""
+        spring = 0.0 if self.springs is None else space.constant(np.diag(self.springs)) @ q
         if not len(self.frequencies):
-            return space.constant(np.zeros(self.outputs))
+            return space.constant(np.zeros(self.outputs)) + spring
         phase = space.constant(self.frequencies) @ q
-        return space.constant(self.cos.T) @ space.cos(phase) + space.constant(
-            self.sin.T
-        ) @ space.sin(phase)
+        even, odd = space.constant(self.cos.T), space.constant(self.sin.T)
+        return even @ space.cos(phase) + odd @ space.sin(phase) + spring
 
     def c_source(self) -> str:
         """See `TorqueForm`."""
         tables = Tables()
         tables.number("JOINTS", self.outputs)
         function = self.c_function(tables)
-        return tables.source() + "\n" + function + C_SOURCE
+        if self.springs is None:
+            return tables.source() + "\n" + function + C_SOURCE % ""
+        tables.add("SPRING", self.springs)
+        return tables.source() + "\n" + function + C_SOURCE % " + SPRING[i] * q[i]"
 
     def c_function(self, tables: Tables) -> str:
         """C99 of ``add_waves(q, torque)``, its constants put into tables, where JOINTS is."""
@@ -72,12 +80,13 @@ class Waves:
 
     def to_arrays(self) -> dict[str, NDArray]:
         """The tables by name."""
-        return {"frequencies": self.frequencies, "cos": self.cos, "sin": self.sin}
+        tables = {"frequencies": self.frequencies, "cos": self.cos, "sin": self.sin}
+        return tables if self.springs is None else {**tables, "springs": self.springs}
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray]) -> Waves:
         """The form with these tables."""
-        return cls(arrays["frequencies"], arrays["cos"], arrays["sin"])
+        return cls(arrays["frequencies"], arrays["cos"], arrays["sin"], arrays.get("springs"))
 
     @classmethod
     def of_potential(cls, frequencies: NDArray, cos: Array, sin: Array) -> Waves:
@@ -88,19 +97,41 @@ class Waves:
 
     def with_constants(self, torque: Array) -> Waves:
         """The same and a constant torque (n,) of every joint [N m], unless all are zero."""
-        if not torque.any():
+        return self._with(np.zeros_like(self.frequencies[:1]), torque, np.zeros_like(torque))
+
+    def with_own_angles(self, twice: Array, springs: Array) -> Waves:
+        """The same and torques of each joint's own angle.
+
+        Parameters
+        ----------
+        twice : (n, 2) array
+            Of cosine and sine of twice the angle [N m].
+        springs : (n,) array
+            [N m/rad].
+        """
+        result = self
+        for j in np.flatnonzero(twice.any(axis=1)):
+            own = np.eye(self.joints)[j]
+            frequency = np.rint(2 * own[None]).astype(np.int64)
+            result = result._with(frequency, own * twice[j, 0], own * twice[j, 1])
+        return replace(result, springs=springs if springs.any() else None)
+
+    def _with(self, frequency: NDArray[np.int64], cos: Array, sin: Array) -> Waves:
+        """The same and one more wave, unless it is zero; (1, n), (n,), (n,)."""
+        if not (cos.any() or sin.any()):
             return self
-        return Waves(
-            np.vstack([self.frequencies, np.zeros_like(self.frequencies[:1])]),
-            np.vstack([self.cos, torque]),
-            np.vstack([self.sin, np.zeros_like(torque)]),
+        return replace(
+            self,
+            frequencies=np.vstack([self.frequencies, frequency]),
+            cos=np.vstack([self.cos, cos]),
+            sin=np.vstack([self.sin, sin]),
         )
 
     def without_rounding(self) -> Waves:
         """The same without terms that are rounding beside the largest."""
         size = np.maximum(np.abs(self.cos), np.abs(self.sin)).max(axis=1, initial=0.0)
         keep = size > NEGLIGIBLE * size.max(initial=0.0)
-        return Waves(self.frequencies[keep], self.cos[keep], self.sin[keep])
+        return Waves(self.frequencies[keep], self.cos[keep], self.sin[keep], self.springs)
 
     @classmethod
     def of_samples_on_grid(cls, torques: Array) -> Waves:
@@ -163,6 +194,6 @@ void isotorque_gravity(const double *q, double *tau)
     int i;
     add_waves(q, torque);
     for (i = 0; i < JOINTS; i++)
-        tau[i] = torque[i];
+        tau[i] = torque[i]%s;
 }
 """

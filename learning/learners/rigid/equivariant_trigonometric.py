@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
 from isotorque.learning.learners.base import SavedLearner
+from isotorque.learning.learners.rigid.causes.beside_gravity import shown_beside
 from isotorque.learning.learners.rigid.equivariant_basis import (
     multi_affine_frequencies,
     potential_basis,
@@ -23,8 +24,9 @@ from isotorque.learning.learners.sample_checks import (
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
-from isotorque.learning.statistics.constant_torques import constant_torques
-from isotorque.learning.statistics.poses import weighed_by_pose
+from isotorque.learning.statistics.causes.extension import Shape
+from isotorque.learning.statistics.causes.linear_model import ADDING
+from isotorque.learning.statistics.poses import by_pose_and_side
 from isotorque.learning.statistics.shrinkage import shrunk_least_squares
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
@@ -67,7 +69,7 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
     from a narrow region leave coefficients open; noise would make them huge, so they are kept as
     small as the torques, and ``standard_error`` says where nothing is known. What is predicted is
     the torque that would be measured: of a potential, which has the group, and a constant of every
-    joint where the samples show one (`constant_torques`), say a sensor's zero, which is no gravity
+    joint where the samples show one (`shown_beside`), say a sensor's zero, which is no gravity
     and has no symmetry. Rows of one pose count as one sample in standard errors. Without
     a group the number of frequencies grows as 3^n: up to six joints or so.
 
@@ -120,14 +122,14 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
         self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
         self.n_samples_seen_ = len(q)
-        q, torque, weights = weighed_by_pose(q, torque, weights)
+        q, torque, _, weights = by_pose_and_side(q, torque, None, weights)
         root = np.sqrt(weights)[:, None]
         self._roots: list[Array] = []
         self._largest = float(np.abs(torque).max(initial=0.0))
         self.offsets_ = np.zeros(self.n_outputs_)
         if self.potential:
             columns = self._gradients(q) @ self._bases[0]
-            self._constant = constant_torques(columns, torque, weights)
+            self._constant = self._constants_shown(q, torque, columns, weights)
             columns = self._with_constants(columns) * root[:, :, None]
             solution = self._solve(columns.reshape(torque.size, -1), (torque * root).ravel())
             count = self._bases[0].shape[1]
@@ -197,6 +199,22 @@ class EquivariantTrigonometric(TorqueRegressor, SavedLearner):
         if self.potential:
             return self._bases[0].shape[1]
         return sum(b.shape[1] * len(j) for b, j in zip(self._bases, self._classes, strict=True))
+
+    def _constants_shown(
+        self, q: Array, torque: Array, columns: Array, weights: Array
+    ) -> NDArray[np.intp]:
+        """Joints with a constant torque beside the potential, as far as samples show it."""
+        k, phase = self._joint_frequencies, self._phases(q)
+
+        def stiffness(x: Array, rows: NDArray[np.intp]) -> Array:
+            a, b = np.split(self._bases[0] @ x, 2)
+            weight = -np.cos(phase[rows]) * a - np.sin(phase[rows]) * b
+            return np.einsum("mk,ki,kj->mij", weight, k, k, optimize=True)
+
+        shown = shown_beside(q, torque, columns, weights, kinds=ADDING, stiffness_of=stiffness)
+        found = {term.place for term in shown.terms if term.shape is Shape.CONSTANT}
+        springs = {term.place for term in shown.terms if term.shape is Shape.ANGLE}
+        return np.array(sorted(found - springs), dtype=np.intp)
 
     def _with_constants(self, columns: Array) -> Array:
         """Columns (m, n, p) of the potential, and those of the constants that were seen."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -12,16 +13,23 @@ from numpy.typing import NDArray
 from scipy.linalg import lstsq
 
 from isotorque.learning.learners.base import SavedLearner
+from isotorque.learning.learners.rigid.causes.beside_gravity import (
+    BesideGravity,
+    ShownBeside,
+    shown_beside,
+)
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
+    checked_directions,
     checked_samples,
     require,
     require_fitted,
 )
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
-from isotorque.learning.statistics.constant_torques import constant_torques
-from isotorque.learning.statistics.poses import weighed_by_pose
+from isotorque.learning.statistics.causes.cause import Cause
+from isotorque.learning.statistics.noise_levels import whitening_of
+from isotorque.learning.statistics.poses import by_pose_and_side
 from isotorque.learning.statistics.shrinkage import shrunk_least_squares
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.robot_options import RobotOptions
@@ -54,9 +62,14 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
     parameters_ : (4 n,) array
         For every joint's body: mass [kg] and mass times centre of mass in the joint's frame
         [kg m]. Physical only as far as identifiable.
+    beside_ : BesideGravity
+        Gains, constants, springs and cables of the joints that the samples show beside gravity;
+        ``predict`` contains them. Friction that they show is no static torque: it is not in it.
+    causes_ : tuple of Cause
+        The same by name, and causes that are no part of the model (angle scale, compliance, a
+        change of payload: the model is of the arm before it).
     offsets_ : (n,) array
-        Constant torques of the joints that the samples show beside gravity [N m]; 0 where they show
-        none. ``predict`` contains them; gravity alone is ``predict(q) - offsets_``.
+        Constants among them [N m]; 0 where the samples show none.
     rank_ : int
         Number of combinations of parameters that the samples determine.
 
@@ -67,9 +80,9 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
     exact torque of a rigid arm. Prefer it whenever the kinematics is known and the arm is rigid.
     It is wrong where lengths or angles are; the learners that know nothing about the arm are not.
 
-    What is predicted is the torque that would be measured: of gravity, and a constant of every
-    joint where the samples show one (`constant_torques`), say a sensor's zero, which is no gravity.
-    Rows of one pose count as one sample in standard errors.
+    What is predicted is the torque that would be measured: of gravity, and what the samples show
+    beside it (`shown_beside`), say a sensor's zero. Every joint has its own noise, and angles have
+    if residuals spread that way. Rows of one pose count as one sample in standard errors.
 
     The regressor is Pinocchio's ``computeJointTorqueRegressor`` without velocity and acceleration:
     of each body's ten columns the first four, mass and first moments. (``computeStaticRegressor``
@@ -89,6 +102,9 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
     (True, 4)
     """
 
+    _root: Array | None
+    _shown: ShownBeside | None
+
     def __init__(
         self,
         robot: Robot | RobotOptions | str | None = None,
@@ -102,7 +118,9 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         self.ridge = ridge
         self.group = group
 
-    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> StaticRegressor:
+    def fit(
+        self, X: Any, y: Any, sample_weight: Any = None, *, directions: Any = None
+    ) -> StaticRegressor:
         """Fit to samples, forgetting what was before.
 
         Parameters
@@ -113,6 +131,8 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
             Torques that hold them [N m].
         sample_weight : (m,) array_like, optional
             Weights of the squared errors.
+        directions : (m, n) array_like, optional
+            Signs of the last motion of every joint before the arm came to rest; 0 where not known.
 
         Returns
         -------
@@ -126,31 +146,58 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         """
         self._check_parameters()
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
+        sides = checked_directions(directions, q.shape)
         self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
         self.n_samples_seen_ = len(q)
-        q, torque, weights = weighed_by_pose(q, torque, weights)
-        joints = constant_torques(self._regressors(q), torque, weights)
-        q, torque, weights, signs = self._with_copies(q, torque, weights)
-        root = np.sqrt(weights)[:, None]
-        constants = (signs[:, :, None] * np.eye(q.shape[1]))[:, :, joints]
-        features = np.concatenate([self._regressors(q), constants], axis=2)
-        features = (features * root[:, :, None]).reshape(torque.size, -1)
-        targets = (torque * root).ravel()
-        self._root, self._constant = None, joints
-        count = features.shape[1] - len(joints)
-        self.offsets_ = np.zeros(torque.shape[1])
-        if self.ridge:
-            penalty = np.sqrt(self.ridge) * np.eye(count, features.shape[1])
-            features, targets = np.vstack([features, penalty]), np.append(targets, np.zeros(count))
-            found, _, rank, _ = lstsq(features, targets, cond=1e-11)
-        else:
-            rank = np.linalg.matrix_rank(features, rtol=1e-11)
-            gravity = max(float(np.linalg.norm(self._model.gravity.linear)), 1e-300)
-            largest = float(np.abs(targets).max(initial=0.0)) / gravity
-            found, self._root = shrunk_least_squares(features, targets, largest)
-        self.rank_ = int(rank) - len(joints)
-        self.parameters_, self.offsets_[joints] = found[:count], found[count:]
+        q, torque, sides, weights = by_pose_and_side(q, torque, sides, weights)
+        own = self._regressors(q)
+        shown = shown_beside(
+            q, torque, own, weights, directions=sides, stiffness_of=self._stiffness_of(q)
+        )
+        beside = shown.columns(q, own, sides)
+        columns = np.concatenate([shown.gains[:, None] * own, beside], axis=2)
+        found, self.rank_, self._root = self._solved(columns, torque, shown.whitening)
+        count = own.shape[2]
+        self.parameters_, self.beside_ = found[:count], shown.beside(found[count:])
+        self._shown = shown
+        if self.group is not None:
+            self._settle_by_copies(q, torque, weights)
         return self
+
+    def gravity(self, X: Any) -> Array:
+        """True torques (m, n) [N m] of gravity alone at configurations (m, n) [rad]."""
+        require_fitted(self)
+        q = checked_configurations(self, X, first=False)
+        return np.asarray(self._regressors(q) @ self.parameters_)
+
+    def _solved(
+        self, columns: Array, torque: Array, whitening: Array
+    ) -> tuple[Array, int, Array | None]:
+        """Least squares; the rank of the parameters and a root of the covariance, if known."""
+        features = (whitening @ columns).reshape(torque.size, -1)
+        targets = np.einsum("kij,kj->ki", whitening, torque).ravel()
+        count, every = 4 * torque.shape[1], columns.shape[2]
+        rank = int(np.linalg.matrix_rank(features, rtol=1e-11)) - (every - count)
+        if self.ridge:
+            penalty = np.sqrt(self.ridge) * np.eye(count, every)
+            features, targets = np.vstack([features, penalty]), np.append(targets, np.zeros(count))
+            return np.asarray(lstsq(features, targets, cond=1e-11)[0]), rank, None
+        gravity = max(float(np.linalg.norm(self._model.gravity.linear)), 1e-300)
+        largest = float(np.abs(torque).max(initial=0.0)) / gravity
+        found, root = shrunk_least_squares(features, targets, largest)
+        return found, rank, root
+
+    def _settle_by_copies(self, q: Array, torque: Array, weights: Array) -> None:
+        """Parameters from samples of gravity and all their symmetric copies."""
+        gravity = (torque - self.beside_.added(q)) / self.beside_.gains
+        copies, torques = self._coordinates.copies(q, gravity)
+        basis, n = self._coordinates.basis, q.shape[1]
+        # moved in q no more than B q says
+        moved = (q + (copies - q @ basis.T) @ np.linalg.pinv(basis).T).reshape(-1, n)
+        whitening = whitening_of(np.ones(n), None, np.tile(weights, len(copies)))
+        solved = self._solved(self._regressors(moved), torques.reshape(-1, n), whitening)
+        self.parameters_, self.rank_, self._root = solved
+        self._shown = None
 
     def standard_error(self, X: Any) -> Array | None:
         """Standard errors (m, n) [N m] of ``predict``, as far as the residuals tell.
@@ -158,35 +205,23 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         None for a loaded model, and where ``ridge`` was given.
         """
         require_fitted(self)
-        root: Array | None = getattr(self, "_root", None)
+        root = self._root
         if root is None:
             return None
         q = checked_configurations(self, X, first=False)
-        constants = np.broadcast_to(
-            np.eye(q.shape[1])[:, self._constant], (len(q), q.shape[1], len(self._constant))
-        )
-        columns = np.concatenate([self._regressors(q), constants], axis=2)
+        columns = self.beside_.gains[:, None] * self._regressors(q)
+        if self._shown is not None:
+            beside = self._shown.columns(q, self._regressors(q), None)
+            columns = np.concatenate([columns, beside], axis=2)
         return np.asarray(np.linalg.norm(columns @ root, axis=2))
 
     def predict(self, X: Any) -> Array:
         """Measured torques (m, n) [N m] estimated for configurations (m, n) [rad]."""
         require_fitted(self)
         q = checked_configurations(self, X, first=False)
-        result = self._regressors(q) @ self.parameters_ + self.offsets_
+        result = self.beside_.gains * (self._regressors(q) @ self.parameters_)
+        result += self.beside_.added(q)
         return result[:, 0] if self._flat else result
-
-    def _with_copies(
-        self, q: Array, torque: Array, weights: Array
-    ) -> tuple[Array, Array, Array, Array]:
-        """Samples and copies, moved in q no more than B q says, and the signs of torques."""
-        if self.group is None:
-            return q, torque, weights, np.ones(torque.shape)
-        copies, torques = self._coordinates.copies(q, torque)
-        basis = self._coordinates.basis
-        moved = q + (copies - q @ basis.T) @ np.linalg.pinv(basis).T
-        n = q.shape[1]
-        signs = self._coordinates.copies(q, np.ones(torque.shape))[1].reshape(-1, n)
-        return moved.reshape(-1, n), torques.reshape(-1, n), np.tile(weights, len(copies)), signs
 
     def _regressors(self, q: Array) -> Array:
         """Derivatives of the torques by the parameters, (m, n, 4 n)."""
@@ -198,13 +233,43 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
             row[:] = np.reshape(whole, (self._model.nv, -1))[:, columns]  # one joint: a vector
         return result
 
+    def _stiffness_of(self, q: Array) -> Callable[[Array, NDArray[np.intp]], Array]:
+        """Derivatives of torques by angles at some of the samples, for any parameters.
+
+        Every angle enters as 1, cosine and sine: differences over half a turn are derivatives.
+        """
+
+        @cache
+        def derivatives(rows: bytes) -> Array:
+            at = q[np.frombuffer(rows, dtype=np.intp)]
+            steps = np.pi / 2 * np.eye(q.shape[1])
+            slopes = [self._regressors(at + s) - self._regressors(at - s) for s in steps]
+            return np.stack(slopes, axis=-1) / 2.0
+
+        def stiffness(parameters: Array, rows: NDArray[np.intp]) -> Array:
+            return np.einsum("kipj,p->kij", derivatives(rows.tobytes()), parameters)
+
+        return stiffness
+
+    @property
+    def offsets_(self) -> Array:
+        """Constant torques (n,) beside gravity [N m]."""
+        require_fitted(self)
+        return self.beside_.coefficients[:, 0]
+
+    @property
+    def causes_(self) -> tuple[Cause, ...]:
+        """What the samples show beside gravity, by name."""
+        require_fitted(self)
+        return self.beside_.causes
+
     def _arrays(self) -> dict[str, NDArray]:
         found = "a loaded one" if isinstance(self.robot, Robot) else None
         if getattr(self.robot, "spec", self.robot) == STANDARD_INPUT:
             found = "standard input"
         if found is not None:
             raise InputError("StaticRegressor", "robot", found, "a name or file, to be saved")
-        return {"parameters": self.parameters_.copy(), "offsets": self.offsets_.copy()}
+        return {"parameters": self.parameters_.copy(), **self.beside_.to_arrays()}
 
     def parameters(self) -> dict[str, Any]:
         """Settings and counters as plain data; the options of the robot as in a recording."""
@@ -228,7 +293,11 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         return super().from_arrays(arrays, {**parameters, "settings": settings})
 
     def _counters(self) -> dict[str, Any]:
-        return {"rank": int(self.rank_), "kinematics": self._kinematics}
+        return {
+            "rank": int(self.rank_),
+            "kinematics": self._kinematics,
+            "causes": [cause.as_json() for cause in self.causes_],
+        }
 
     def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
         if state["kinematics"] != self._kinematics:
@@ -237,7 +306,7 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
                 "saved model", "robot", f"{name}, of other kinematics", "the arm it was fitted to"
             )
         self.parameters_, self.rank_ = arrays["parameters"], int(state["rank"])
-        self.offsets_ = arrays.get("offsets", np.zeros(self.n_outputs_))
+        self.beside_ = BesideGravity.from_saved(arrays, state, self.n_outputs_)
 
     def _check_parameters(self) -> None:
         require(self, "robot", self.robot is not None, "a robot, a built-in name or a file")
@@ -253,6 +322,7 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
             if number != robot.n:
                 raise InputError(field, "number of columns", number, f"{robot.n}, as the robot")
         self._coordinates = SymmetryCoordinates.of(self.group, joints)
+        self._root, self._shown = None, None
         self._model, self._kinematics = robot.model, _kinematics(robot)
         self._flat = flat
         self.n_outputs_ = outputs

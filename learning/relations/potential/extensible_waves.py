@@ -9,13 +9,10 @@ from isotorque.learning.relations.potential.errors_in_variables import (
     torque_features,
 )
 from isotorque.learning.relations.potential.potential_fit import FittedPotential
-from isotorque.learning.statistics.causes.extension import Kind
-from isotorque.learning.statistics.causes.linear_model import KINDS, LinearModel, deviations
+from isotorque.learning.statistics.causes.linear_model import ADDING, KINDS, LinearModel, deviations
 
 MOST_COLUMNS = 300
 """Beyond, only what adds to the torque is tried: five joints have 242 coefficients, six 728."""
-ADDING = (Kind.OFFSET, Kind.SPRING, Kind.CABLE)
-"""Kinds that add to the torque, whatever the model."""
 
 
 def extensible_waves(fit: FittedPotential) -> LinearModel:

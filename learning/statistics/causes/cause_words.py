@@ -8,8 +8,11 @@ import numpy as np
 
 from isotorque.learning.statistics.causes.cause import Cause
 from isotorque.learning.statistics.causes.extension import Kind
-from isotorque.learning.statistics.constant_torques import OR_FRICTION
 
+OR_FRICTION = (
+    ", or friction approached from one side: not to be told apart without approach directions"
+)
+"""Said wherever constants are named: joints that always stop moving the same way show the same."""
 NAMES = {
     Kind.OFFSET: "a constant torque",
     Kind.GAIN: "a gain",
@@ -30,8 +33,14 @@ UNITS = {
 }
 
 
-def causes_in_words(causes: Sequence[Cause]) -> str:
+def causes_in_words(causes: Sequence[Cause], names: Sequence[str] = ()) -> str:
     """Name causes with joint, size, standard error, and what cannot be told from them.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+    names : sequence of str
+        Of the joints; by default they are numbered from 1.
 
     Returns
     -------
@@ -49,24 +58,27 @@ def causes_in_words(causes: Sequence[Cause]) -> str:
     a gain of 0.304 on joint 2 (standard error 0.003); not to be told apart from it with these
     poses: a gain on joint 1
     """
-    return "; ".join(_in_words(cause) for cause in causes)
+    return "; ".join(_in_words(cause, names) for cause in causes)
 
 
-def _in_words(cause: Cause) -> str:
-    said = f"{NAMES[cause.kind]}{_size(cause)}{_place(cause.joint, cause.kind)}{_error(cause)}"
+def _in_words(cause: Cause, names: Sequence[str]) -> str:
+    place = _place(cause.joint, cause.kind, names)
+    said = f"{NAMES[cause.kind]}{_size(cause)}{place}{_error(cause)}"
     if cause.kind is Kind.OFFSET:
         said += OR_FRICTION
-    others = [f"{NAMES[k]}{_place(joint, k)}" for k, joint in cause.rivals[1:]]
+    others = [f"{NAMES[k]}{_place(joint, k, names)}" for k, joint in cause.rivals[1:]]
     others = [other for i, other in enumerate(others) if other not in others[:i]]
     if others:
         said += f"; not to be told apart from it with these poses: {', '.join(others)}"
     return said
 
 
-def _place(joint: int | None, kind: Kind) -> str:
+def _place(joint: int | None, kind: Kind, names: Sequence[str]) -> str:
     if kind is Kind.PAYLOAD:
         return " in a part of the samples"
-    return " on every joint" if joint is None else f" on joint {joint + 1}"
+    if joint is None:
+        return " on every joint"
+    return f" on {names[joint]}" if names else f" on joint {joint + 1}"
 
 
 def _size(cause: Cause) -> str:

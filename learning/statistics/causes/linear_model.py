@@ -19,10 +19,13 @@ from isotorque.learning.statistics.causes.extended_fit import (
     width,
 )
 from isotorque.learning.statistics.causes.extension import ADDED, Extension, Kind, Shape, Term
+from isotorque.learning.statistics.noise_levels import estimated_levels, noise_left, whitening_of
 
 Array = NDArray[np.float64]
 
 KINDS = tuple(kind for kind in Kind if kind is not Kind.SIGN)
+ADDING = (Kind.OFFSET, Kind.SPRING, Kind.CABLE)
+"""Kinds that add to the torque, whatever the model and wherever the arm came from."""
 DEPENDENT = 1e-11
 """Combinations of columns (of length 1) below this share of the largest are not told apart."""
 PASSES, SETTLED = 6, 1e-4
@@ -60,6 +63,9 @@ class LinearModel:
     stiffness_of : callable, optional
         Derivatives (m, n, n) of ``columns @ x`` by the angles for x (p,); without it errors of
         angles are not looked for.
+    weights : (m,) array or None
+        Of the squared errors of the samples, where the whitening is theirs and the noise's alone;
+        None: it holds what else was known of the errors, and only its size is estimated.
 
     Examples
     --------
@@ -85,6 +91,7 @@ class LinearModel:
     directions: Array | None = None
     kinds: tuple[Kind, ...] = KINDS
     stiffness_of: Callable[[Array], Array] | None = field(default=None, repr=False)
+    weights: Array | None = None
 
     @classmethod
     def of(
@@ -96,6 +103,7 @@ class LinearModel:
         weight: Array | None = None,
         directions: Array | None = None,
         kinds: tuple[Kind, ...] = KINDS,
+        stiffness_of: Callable[[Array], Array] | None = None,
     ) -> LinearModel:
         """A model whose noise is not known, that of every joint its own.
 
@@ -111,12 +119,25 @@ class LinearModel:
             Signs of the last motion of every joint; 0 where not known.
         kinds : tuple of Kind
             What may be added.
+        stiffness_of : callable, optional
+            As of the class; with it, noise of the angles is looked for, too.
         """
         m, n = q.shape
-        root = np.ones(m) if weight is None else np.sqrt(weight / weight.mean())
-        whitening = root[:, None, None] * np.eye(n)
+        weights = np.ones(m) if weight is None else weight / weight.mean()
         floor = np.full(n, 1e-12 * max(float(np.abs(torque).max(initial=0.0)), 1e-300))
-        model = cls(q, torque, own, whitening, np.ones(n), False, floor, directions, kinds)
+        model = cls(
+            q,
+            torque,
+            own,
+            whitening_of(np.ones(n), None, weights),
+            np.ones(n),
+            False,
+            floor,
+            directions,
+            kinds,
+            stiffness_of,
+            weights,
+        )
         return model.reweighted(model.alone())
 
     def alone(self, terms: Sequence[Term] = ()) -> LinearFit:
@@ -165,6 +186,10 @@ class LinearModel:
             return self
         model = self
         for _ in range(REWEIGHTINGS):
+            if self.weights is not None:
+                model = model._with_noise_of(fitted, self.weights)
+                fitted = model.refitted(fitted.terms, fitted)
+                continue
             # components of whitened errors, not joints: errors of angles are felt by all joints,
             # and combinations of torques in which they cancel would be weighed wrongly
             lever = np.sum(fitted.basis**2, axis=1).reshape(self.q.shape).sum(axis=0)
@@ -175,6 +200,19 @@ class LinearModel:
             model = replace(model, whitening=whitening, noise=deviations(whitening))
             fitted = model.refitted(fitted.terms, fitted)
         return model
+
+    def _with_noise_of(self, fitted: LinearFit, weights: Array) -> Self:
+        """The same with the noise of torques, and of angles, that a fit leaves."""
+        leverage = np.sum(fitted.basis**2, axis=1).reshape(self.q.shape)
+        angle, leaning = 0.0, None
+        if self.stiffness_of is None:
+            levels = estimated_levels(fitted.rest, leverage, weights)
+        else:
+            levels, angle = noise_left(fitted.rest, leverage, weights, fitted.stiffness)
+            leaning = angle * fitted.stiffness
+        levels = np.maximum(levels, self.floor)
+        whitening = whitening_of(levels, leaning, weights)
+        return replace(self, whitening=whitening, noise=levels)
 
     def _fitted(
         self, terms: tuple[Term, ...], gains: Array, unknowns: Array, values: dict[Term, Array]

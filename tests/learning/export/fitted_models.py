@@ -27,6 +27,16 @@ class WithCables(RigidChainProcess):
         return super().fit(q, y + 0.04 * np.abs(y).max() * np.sin(2.0 * q))
 
 
+class WithSpring(StaticRegressor):
+    """The parametric learner of an arm with a spring at joint 1 and a cable at joint 2."""
+
+    def fit(self, X, y):
+        """Fit to the samples with both."""
+        q = np.asarray(X)
+        beside = 0.5 * q[:, :1] * [1.0, 0.0] + 0.2 * np.cos(2.0 * q[:, 1:]) * [0.0, 1.0]
+        return super().fit(q, y + beside)
+
+
 QUICK = {"restarts": 1, "iterations": 10, "trial_iterations": 5}
 #: Learners by name: from a robot's name and its group.
 MAKERS = {
@@ -54,13 +64,14 @@ MAKERS = {
     "smooth gaussian-process": lambda robot, group: SymmetricGaussianProcess(group=group),
     "noisy gaussian-process": lambda robot, group: SymmetricGaussianProcess(None, group=group),
     "parametric": lambda robot, group: StaticRegressor(robot),
+    "parametric with spring": lambda robot, group: WithSpring(robot),
     "rigid-chain": lambda robot, group: RigidChain(unknown_offsets=True),
     "rigid-chain+gaussian-process": lambda robot, group: WithCables(starts=5),
     "dictionary": lambda robot, group: DictionaryLearner(
         EquivariantTrigonometric(group=group), budget=30, group=group
     ),
 }
-TIED = [name for name in MAKERS if name != "parametric" and "rigid" not in name]
+TIED = [name for name in MAKERS if "parametric" not in name and "rigid" not in name]
 
 
 def samples(robot, count, seed=0):

@@ -34,7 +34,7 @@ def test_a_constant_is_named_with_its_joint_and_size(seed, joint, size, sign):
 def test_noise_shows_no_constant_more_often_than_stated():
     rng = np.random.default_rng(0)
     seen = sum(len(constants(found(rng.normal(size=(20, 2)), 1.0))) for _ in range(300))
-    assert seen <= 1  # one in ten thousand is stated
+    assert seen <= 6  # one in two hundred is stated
 
 
 @pytest.mark.parametrize(

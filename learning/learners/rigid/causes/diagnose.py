@@ -18,10 +18,11 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples, noise_by_joint
 from isotorque.learning.learners.rigid.fitting.chain_search import ChainModel
 from isotorque.learning.learners.rigid.planning.poses_needed import poses_needed
+from isotorque.learning.learners.sample_checks import checked_directions
 from isotorque.learning.statistics.causes.cause import Cause, causes_of
 from isotorque.learning.statistics.causes.extension import Term
 from isotorque.learning.statistics.causes.selection import Selection, is_clear, selected
-from isotorque.learning.statistics.poses import group_poses
+from isotorque.learning.statistics.poses import by_pose_and_side
 from isotorque.learning.statistics.static_samples import static_samples
 from isotorque.symbolic.common.errors import InputError
 from isotorque.symbolic.common.single_thread import single_thread
@@ -132,12 +133,7 @@ def diagnose(
     offset 1 [0.3]
     """
     configurations, torques = static_samples(q, tau)
-    sides = None
-    if directions is not None:
-        sides = np.sign(np.asarray(directions, dtype=float))
-        if sides.shape != configurations.shape or not np.isfinite(sides).all():
-            accepted = f"a sign for every angle, shape {configurations.shape}"
-            raise InputError("diagnose", "directions", f"shape {sides.shape}", accepted)
+    sides = checked_directions(directions, configurations.shape)
     weights = np.ones(len(torques)) if weight is None else np.asarray(weight, dtype=float)
     if weights.shape != torques.shape[:1] or not (np.isfinite(weights) & (weights > 0.0)).all():
         accepted = f"a number above 0 for every row, shape {torques.shape[:1]}"
@@ -145,8 +141,8 @@ def diagnose(
     kept = weights > LIGHT * weights.max(initial=0.0)
     configurations, torques, weights = configurations[kept], torques[kept], weights[kept]
     sides = None if sides is None else sides[kept]
-    configurations, torques, sides, weights = _by_pose_and_side(
-        configurations, torques, sides, weights
+    configurations, torques, sides, weights = by_pose_and_side(
+        configurations, torques, sides, weights, summed=False
     )
     m, n = configurations.shape
     stated = 0.0 if torque_noise is None else torque_noise
@@ -185,16 +181,3 @@ def diagnose(
     causes = causes_of(selection)
     clear = is_clear(selection, alone)
     return Diagnosis(causes, selection.adequate, clear, selection.model.noise, selection)
-
-
-def _by_pose_and_side(
-    q: Array, tau: Array, sides: Array | None, weight: Array
-) -> tuple[Array, Array, Array | None, Array]:
-    """One sample per pose, and per direction of approach where these are known: weighted means."""
-    poses = group_poses(q)
-    if not poses.repeated:
-        return q, tau, sides, weight
-    split = poses if sides is None else poses.split(sides)
-    torques, mean = split.means(tau, weight), split.means(weight[:, None])
-    at = poses.configurations(q)[poses.label[split.first]]
-    return at, torques, None if sides is None else sides[split.first], mean[:, 0]

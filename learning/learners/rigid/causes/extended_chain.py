@@ -15,10 +15,6 @@ from isotorque.learning.learners.rigid.fitting.chain_parameters import (
 )
 from isotorque.learning.learners.rigid.fitting.chain_samples import ChainSamples
 from isotorque.learning.learners.rigid.fitting.chain_search import minimise
-from isotorque.learning.learners.rigid.fitting.noise_estimate import (
-    estimated_angle_noise,
-    estimated_levels,
-)
 from isotorque.learning.statistics.causes.extended_fit import (
     ExtendedFit,
     Slopes,
@@ -26,6 +22,7 @@ from isotorque.learning.statistics.causes.extended_fit import (
     width,
 )
 from isotorque.learning.statistics.causes.extension import ADDED, Shape, Term
+from isotorque.learning.statistics.noise_levels import estimated_levels, noise_left
 
 Array = NDArray[np.float64]
 
@@ -33,8 +30,6 @@ PASSES = 6
 """Times that columns which depend on the chain are computed anew, at most."""
 SETTLED = 1e-4
 """Passes end when one changes the cost by a smaller share."""
-ENOUGH = 100
-"""Samples from which the noise of angles is estimated, at most twice as many."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +72,10 @@ class ExtendedChain(ExtendedFit):
         samples = self.samples
         leverage = np.sum(self.basis**2, axis=1).reshape(samples.q.shape)
         if angles_known:
-            levels = estimated_levels(samples, self.rest, leverage, self.stiffness)
+            leaning = self.stiffness * samples.angle_noise
+            levels = estimated_levels(self.rest, leverage, samples.weights, leaning)
             return samples.with_torque_noise(levels)
-        exact = replace(samples, angle_noise=np.zeros(self.chain.n))
-        levels = estimated_levels(exact, self.rest, leverage, self.stiffness)
-        kept = np.maximum(1.0 - leverage.mean(axis=0), 1.0 / len(leverage))
-        step = max(1, len(leverage) // ENOUGH)
-        levels, angle = estimated_angle_noise(
-            (self.rest / np.sqrt(kept))[::step], self.stiffness[::step], levels
-        )
+        levels, angle = noise_left(self.rest, leverage, samples.weights, self.stiffness)
         return replace(samples, torque_noise=levels, angle_noise=np.full(self.chain.n, angle))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from isotorque.learning.learners.rigid.fitting.chain_parameters import ChainParameters
+from isotorque.learning.statistics.noise_levels import whitening_of
 from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
@@ -79,20 +80,14 @@ class ChainSamples:
             Where angles are measured with errors e, torques err by ``H e`` with H the stiffness;
             without a chain H is guessed from the size of the torques.
         """
-        variance = np.maximum(self.torque_noise, self.floor) ** 2
-        m, n = self.q.shape
-        result = np.zeros((m, n, n))
-        diagonal = np.arange(n)
-        if chain is None or not self.angle_noise.any():
+        levels = np.maximum(self.torque_noise, self.floor)
+        if not self.angle_noise.any():
+            return whitening_of(levels, None, self.weights)
+        if chain is None:
             size = np.sqrt(np.mean(self.torque**2, axis=0))
-            guess = variance + 2.0 * size**2 * np.max(self.angle_noise) ** 2
-            result[:, diagonal, diagonal] = 1.0 / np.sqrt(guess)
-        else:
-            leaning = chain.stiffness(self.q) * self.angle_noise
-            covariance = leaning @ leaning.transpose(0, 2, 1)
-            covariance[:, diagonal, diagonal] += variance
-            result[:] = np.linalg.inv(np.linalg.cholesky(covariance))
-        return np.asarray(result * np.sqrt(self.weights)[:, None, None])
+            guess = levels**2 + 2.0 * size**2 * np.max(self.angle_noise) ** 2
+            return whitening_of(np.sqrt(guess), None, self.weights)
+        return whitening_of(levels, chain.stiffness(self.q) * self.angle_noise, self.weights)
 
     def with_torque_noise(self, torque_noise: Array) -> ChainSamples:
         """The same samples with other noise levels."""

@@ -17,7 +17,7 @@ from isotorque.learning.learners.rigid.planning.standard_errors import TorqueErr
 from isotorque.learning.learners.rigid.structure.beside_chain import BesideChain
 from isotorque.learning.learners.rigid.structure.expansion import expanded
 from isotorque.learning.learners.rigid.structure.snapping import SnappedChain
-from isotorque.learning.statistics.constant_torques import OR_FRICTION
+from isotorque.learning.statistics.causes.cause_words import OR_FRICTION
 from isotorque.symbolic.common.single_thread import single_thread
 from isotorque.symbolic.groups.correction import Correction
 from isotorque.symbolic.groups.symmetry_group import SymmetryGroup
