@@ -183,7 +183,7 @@ def learn(
 
 
 def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quiet: bool) -> int:
-    from isotorque.runs.from_data.chain_from_data import RIGID, ChainDataOptions, chain_from_data
+    from isotorque.runs.from_data.chain_from_data import ChainDataOptions, chain_from_data
     from isotorque.symbolic.common.errors import InputError
 
     if given.get("data") is None:
@@ -196,7 +196,7 @@ def _learn_from_data_alone(given: dict[str, Any], out: Path, *, json: bool, quie
         given.get("torque_noise"),
         given.get("angle_noise"),
         given.get("seed", 0),
-        given.get("learner") or RIGID,
+        given.get("learner"),
         given.get("unknown_gains", False),
         tuple(given.get("known_gain") or ()),
         given.get("loaded"),
@@ -230,15 +230,37 @@ def _print_chain(document: dict[str, Any]) -> None:
     error = document["standard_error"]
     print(f"torque known to {error['rms']:.2g} N m within the ranges of the recording", end=" ")
     print(f"(standard error, RMS; at most {error['largest']:.2g})")
+    _print_held_out(document)
     _print_constant_torques(document)
     if document.get("beside_gravity"):
-        print(f"beside gravity, part of the model: {document['beside_gravity']}")
+        part = ", part of the model" if "relations" in document else ""
+        print(f"beside gravity{part}: {document['beside_gravity']}")
+    if "poses_after_another_payload" in document:
+        after = document["poses_after_another_payload"]
+        print(f"the model is of the arm before its payload changed: {after} poses are left out")
     if "relations" in document:
         print(f"{document['relations']} symmetry relations, {document['statement']}")
     for group in document.get("gains", []):
         _print_gains(group)
     for name, share in zip(document["joints"], document.get("process_share", []), strict=False):
         print(f"{name}: {100 * share:.1f} % of the torque (RMS) is beside the rigid chain")
+
+
+def _print_held_out(document: dict[str, Any]) -> None:
+    """How models erred at poses left out, joint by joint the one that was chosen."""
+    found = document.get("held_out")
+    if found is None:
+        return
+    print(f"at poses left out (measured torque): {found['rmse']:.3g} N m RMS", end="; ")
+    by_joint = zip(document["joints"], found["rmse_by_joint"], strict=True)
+    print(", ".join(f"{name} {rmse:.2g}" for name, rmse in by_joint), end="")
+    for name, other in document["contenders"].items():
+        if name != document["learner"]:
+            said = (
+                f"{other['rmse']:.3g} N m" if "rmse" in other else f"not used: {other['missing']}"
+            )
+            print(f"; {name} {said}", end="")
+    print()
 
 
 def _print_constant_torques(document: dict[str, Any]) -> None:

@@ -181,6 +181,12 @@ def by_pose(q: Array, tau: Array) -> tuple[Poses, Array, Array]:
     return poses, poses.configurations(q), poses.means(tau)
 
 
+def poses_and_sides(q: Array, sides: Array | None) -> Poses:
+    """Group rows by pose, and by the side from which it was reached where these are known."""
+    poses = group_poses(q)
+    return poses if sides is None or not poses.repeated else poses.split(sides)
+
+
 def by_pose_and_side(
     q: Array, tau: Array, sides: Array | None, weight: Array, *, summed: bool = True
 ) -> tuple[Array, Array, Array | None, Array]:
@@ -207,10 +213,9 @@ def by_pose_and_side(
     >>> [len(x) for x in by_pose_and_side(q, tau, np.array([[1.0], [-1.0]]), weight)]
     [2, 2, 2, 2]
     """
-    poses = group_poses(q)
-    if not poses.repeated:
+    split = poses_and_sides(q, sides)
+    if not split.repeated:
         return q, tau, sides, weight
-    split = poses if sides is None else poses.split(sides)
     first = q[split.first]
     at = first + split.means(wrap(q - first[split.label]), weight)
     total = np.bincount(split.label, weight, split.count).astype(float)

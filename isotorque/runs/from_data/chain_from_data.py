@@ -19,12 +19,19 @@ from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.fitting.gains import GainGroup
 from isotorque.learning.learners.rigid.fitting.known_load import gain_from_load
 from isotorque.learning.learners.rigid.misread_samples import other_reading
+from isotorque.learning.learners.rigid.model_choice import (
+    RIGID,
+    WITH_PROCESS,
+    Contender,
+    ModelChoice,
+    choose_model,
+)
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import ChainSymmetries
 from isotorque.learning.statistics.causes.cause import Cause
 from isotorque.learning.statistics.causes.cause_words import causes_in_words
-from isotorque.learning.statistics.poses import group_poses
+from isotorque.learning.statistics.poses import by_pose_and_side
 from isotorque.runs.from_data.poses_to_take import poses_to_take
 from isotorque.runs.stages import DATABASE
 from isotorque.symbolic.common.errors import InputError
@@ -33,7 +40,7 @@ from isotorque.verify.relations.relation_files import relations_document
 
 Array = NDArray[np.float64]
 
-RIGID, WITH_PROCESS = WITHOUT_ROBOT = ("rigid-chain", "rigid-chain+gaussian-process")
+WITHOUT_ROBOT = (RIGID, WITH_PROCESS)
 """Learners that are told nothing but samples."""
 MOST_LISTED = 64
 """Relations are listed up to this order, generators of larger groups."""
@@ -51,8 +58,9 @@ class ChainDataOptions:
         Standard deviations where known [N m], [rad].
     seed : int
         Of the random starts.
-    learner : str
-        ``rigid-chain``, or ``rigid-chain+gaussian-process`` for arms with cables and springs.
+    learner : str or None
+        ``rigid-chain``, or ``rigid-chain+gaussian-process`` for arms with cables and bending links;
+        None: whichever errs less at poses left out.
     unknown_gains : bool
         Whether torques are in units of their own at every joint.
     known_gains : tuple of str
@@ -67,7 +75,7 @@ class ChainDataOptions:
     torque_noise: float | None = None
     angle_noise: float | None = None
     seed: int = 0
-    learner: str = RIGID
+    learner: str | None = None
     unknown_gains: bool = False
     known_gains: tuple[str, ...] = ()
     loaded: Path | None = None
@@ -87,7 +95,7 @@ class ChainDataOptions:
         if self.unknown_gains and self.learner == WITH_PROCESS:
             accepted = f"nothing with {WITH_PROCESS}, which takes gains as known"
             raise InputError("command line", "--unknown-gains", "given", accepted)
-        if self.learner not in WITHOUT_ROBOT:
+        if self.learner is not None and self.learner not in WITHOUT_ROBOT:
             accepted = f"{' or '.join(WITHOUT_ROBOT)}, which need no robot; or a ROBOT"
             raise InputError("command line", "--learner", self.learner, accepted)
         if self.learner == WITH_PROCESS and self.angle_noise:
@@ -113,6 +121,8 @@ class ChainFromData:
         None where the chain was not accepted, and where it is not alone.
     other_reading : str or None
         What would make the samples those of a rigid chain, where they are none as they stand.
+    choice : ModelChoice or None
+        What was tried, unless a learner was named.
     """
 
     options: ChainDataOptions
@@ -121,6 +131,12 @@ class ChainFromData:
     learner: RigidChain | RigidChainProcess
     symmetries: ChainSymmetries | None
     other_reading: str | None = None
+    choice: ModelChoice | None = None
+
+    @property
+    def name(self) -> str:
+        """Of the learner."""
+        return WITH_PROCESS if isinstance(self.learner, RigidChainProcess) else RIGID
 
     def save(self, out: Path) -> Path | None:
         """Write model and relations; None, and nothing, where the chain was not accepted."""
@@ -129,7 +145,7 @@ class ChainFromData:
         content = hashlib.sha256(self.options.file.read_bytes()).hexdigest()
         notes = {
             "strategy": "data",
-            "learner": self.options.learner,
+            "learner": self.name,
             "file": str(self.options.file),
             "verdict": str(self.learner.verdict_),
         }
@@ -145,7 +161,7 @@ class ChainFromData:
         learner, verdict = self.learner, self.learner.verdict_
         found: dict[str, Any] = {
             "joints": list(self.joint_names),
-            "learner": self.options.learner,
+            "learner": self.name,
             "strategy": "data",
             "samples": len(self.samples.q),
             "poses": self.learner.n_samples_seen_,
@@ -184,18 +200,30 @@ class ChainFromData:
             }
         if isinstance(learner, RigidChainProcess) and verdict.accepted:
             found["process_share"] = learner.process_share_.tolist()
+        causes = self.causes
+        found |= {
+            "beside_gravity": causes_in_words(causes, self.joint_names) or None,
+            "causes": [self._cause(cause) for cause in causes],
+        }
+        if self.choice is not None:
+            found |= choice_document(self.choice, self.joint_names)
         if isinstance(learner, RigidChain) and self.symmetries is not None:
             found |= {
                 "torque_noise": learner.fit_.samples.torque_noise.tolist(),
                 "relations": self.symmetries.group.order,
                 "statement": self.symmetries.statement,
-                "beside_gravity": causes_in_words(learner.causes_) or None,
-                "causes": [self._cause(cause) for cause in learner.causes_],
             }
             if learner.gain_groups_:
                 gains = learner.chain_.gains
                 found["gains"] = [self._gains(group, gains) for group in learner.gain_groups_]
         return found
+
+    @property
+    def causes(self) -> tuple[Cause, ...]:
+        """What the samples show beside gravity."""
+        if self.choice is not None:
+            return self.choice.causes
+        return tuple(getattr(self.learner, "causes_", ()))
 
     @property
     def constant_torques(self) -> list[tuple[int, str]]:
@@ -330,10 +358,10 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
     names = joint_names_of(options.file)
     samples = read_csv(options.file, names)
     _refuse_constant_torques(options.file, samples)
-    poses = group_poses(samples.q)
-    q, tau = samples.q, samples.tau
-    if poses.repeated:
-        q, tau = poses.configurations(q), poses.means(tau)
+    if options.learner is None and not options.unknown_gains:
+        return _chosen(options, names, samples)
+    rows = np.ones(len(samples.q))
+    q, tau, sides, _ = by_pose_and_side(samples.q, samples.tau, samples.directions, rows)
     stated = options.torque_noise is not None or options.angle_noise is not None
 
     if options.learner == WITH_PROCESS:
@@ -352,7 +380,7 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
             unknown_gains=options.unknown_gains,
             known_gains=known,
             random_state=options.seed,
-        ).fit(q, tau)
+        ).fit(q, tau, directions=sides)
         return alone.with_causes() or alone
 
     learner = fitted()
@@ -375,6 +403,50 @@ def chain_from_data(options: ChainDataOptions) -> ChainFromData:
     if learner.verdict_ is FitStatus.MISFIT:
         reading = other_reading(learner, q, tau, names)
     return ChainFromData(options, names, samples, learner, None, reading)
+
+
+def _chosen(
+    options: ChainDataOptions, names: tuple[str, ...], samples: StaticSamples
+) -> ChainFromData:
+    """The model that errs least at poses left out; the chain, refused, where none can be used."""
+    choice = choose_model(
+        samples,
+        torque_noise=options.torque_noise,
+        angle_noise=options.angle_noise or 0.0,
+        seed=options.seed,
+        joint_names=names,
+    )
+    learner = choice.rigid if choice.chosen is None else choice.chosen.learner
+    symmetries = None
+    if isinstance(learner, RigidChain) and learner.verdict_.accepted:
+        symmetries = learner.symmetries()
+    return ChainFromData(options, names, samples, learner, symmetries, choice.reading, choice)
+
+
+def choice_document(choice: ModelChoice, joint_names: Sequence[str]) -> dict[str, Any]:
+    """What was tried and how it erred at poses left out, for JSON."""
+    found: dict[str, Any] = {"contenders": {c.name: _contender(c) for c in choice.contenders}}
+    if choice.chosen is not None and choice.chosen.held_out is not None:
+        found["held_out"] = _contender(choice.chosen)
+    if choice.friction.any():
+        found["friction"] = dict(zip(joint_names, choice.friction.tolist(), strict=True))
+    if choice.left_out:
+        found["poses_after_another_payload"] = choice.left_out
+    return found
+
+
+def _contender(contender: Contender) -> dict[str, Any]:
+    tried = contender.held_out
+    if tried is None:
+        return {"missing": contender.reason or None}
+    return {
+        "folds": tried.folds,
+        "poses": tried.poses.count,
+        "rmse": tried.rmse,
+        "rmse_by_joint": tried.rmse_by_joint.tolist(),
+        "rmse_without_outliers": tried.rmse_of_others,
+        "outliers": int(tried.outliers.sum()),
+    }
 
 
 def _refuse_constant_torques(file: Path, samples: StaticSamples) -> None:

@@ -14,11 +14,17 @@ from isotorque.learning.files.run_info import RunInfo
 from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation
 from isotorque.learning.learners.registry import LearningTask
+from isotorque.learning.learners.rigid.model_choice import (
+    ModelChoice,
+    choice_in_words,
+    choose_model,
+)
 from isotorque.learning.recordings.recorded_data import record_samples
 from isotorque.learning.recordings.recording import Recording
 from isotorque.learning.relations.testing.supported_group import SupportedGroup
 from isotorque.learning.statistics.extrapolation import extrapolation
 from isotorque.runs.experiment import Progress
+from isotorque.runs.from_data.chain_from_data import choice_document
 from isotorque.runs.from_data.data_relations import RelationsOfData
 from isotorque.runs.from_data.data_remarks import (
     analytic_remarks,
@@ -27,7 +33,7 @@ from isotorque.runs.from_data.data_remarks import (
 )
 from isotorque.runs.lattice_learning import fitted_with_curve
 from isotorque.runs.learned_model import LearnedModel
-from isotorque.runs.learning_curve import DenseTest
+from isotorque.runs.learning_curve import CurvePoint, DenseTest
 from isotorque.runs.options.recorded_robot import as_recorded, keep_robot_file
 from isotorque.runs.options.run_options import check_symmetries
 from isotorque.runs.options.settings import Settings, check_learner_settings
@@ -43,8 +49,6 @@ from isotorque.verify.models.measured_torques import Disagreement, disagreement
 
 Array = NDArray[np.float64]
 
-MANY_ROWS = 1000
-"""More samples than these are too many for a Gaussian process by default."""
 WORST = 10
 """Outliers that are named."""
 STAGE = "learning from data"
@@ -61,9 +65,11 @@ class DataOptions:
     file : Path
         The CSV file, see ``read_csv``.
     learner : str or None
-        Name of the learner; None: a Gaussian process, beyond ``MANY_ROWS`` rows a network.
+        Name of the learner; None: of `CHOICES` the simplest that errs no more than the best at
+        poses left out.
     symmetries : str
-        ``learned`` from the data, ``exact`` or ``none``.
+        ``learned`` from the data, ``exact`` or ``none``, for a learner that is named; the models
+        that are tried without one have the symmetries of what they explain.
     drop_outliers : bool
         Whether the model leaves out rows that do not fit the others.
     seed : int
@@ -87,7 +93,8 @@ class DataOptions:
         if self.learner is not None:
             chosen = self.settings.learner
             check_learner_settings(self.learner, chosen, LearningTask(robot=self.robot))
-        elif self.settings.values:
+            return
+        if self.settings.values:
             accepted = "a --learner beside it"
             raise InputError("command line", "--set", self.settings.words[0], accepted)
 
@@ -132,9 +139,122 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     gravity = GravityModel(robot)
     _record(robot, samples, output_directory(out))
     keep_robot_file(options.robot, out)
-    name = options.learner or ("gaussian-process" if len(samples.q) <= MANY_ROWS else "network")
     task = options.task(samples, robot)
+    if options.learner is None:
+        made = _chosen(options, samples, robot, gravity, progress)
+    else:
+        made = _named(options, options.learner, samples, robot, gravity, task, progress)
+    progress(STAGE, 3, 3, "")
+    unfit = made.outliers
+    compared = disagreement(samples.q, samples.tau, gravity, leave_out=unfit)
+    beyond = extrapolation(made.learner, made.seen, made.torque, robot.limits)
+    return LearnedModel(
+        robot,
+        gravity,
+        made.learner,
+        {
+            "strategy": "data",
+            "learner": made.name,
+            "symmetries": options.symmetries,
+            "extrapolation": beyond.document(),
+        },
+        made.samples,
+        0,
+        made.relations,
+        made.curve,
+        (
+            *made.remarks,
+            *cause_remarks(made.learner, robot),
+            *([beyond.remark] if beyond.remark else []),
+            *outlier_remarks(made.tried, unfit, options.drop_outliers, WORST),
+            *analytic_remarks(compared, made.tried, samples, robot),
+        ),
+        {
+            "data": {
+                "file": str(options.file),
+                "rows": len(samples.q),
+                "outliers": _outliers(made.tried, unfit),
+                "symmetry_test": _symmetry_test(made.test),
+                "held_out": _held_out(made.tried),
+                "analytic": _analytic(compared),
+                **made.details,
+            }
+        },
+    )
 
+
+@dataclass(frozen=True, eq=False)
+class _Made:
+    """A model, and how it came about."""
+
+    learner: Any
+    name: str
+    seen: Array
+    torque: Array
+    samples: int
+    relations: int
+    curve: tuple[CurvePoint, ...]
+    remarks: tuple[str, ...]
+    tried: CrossValidation | None
+    outliers: NDArray[np.bool_]
+    test: SupportedGroup | None = None
+    details: dict[str, Any] = field(default_factory=dict)
+
+
+def _chosen(
+    options: DataOptions,
+    samples: StaticSamples,
+    robot: Robot,
+    gravity: GravityModel,
+    progress: Progress,
+) -> _Made:
+    """The model that errs least at poses left out."""
+    steps = iter(range(3))
+
+    def choose(part: StaticSamples) -> ModelChoice:
+        return choose_model(
+            part,
+            options.robot,
+            seed=options.seed,
+            joint_names=robot.joint_names,
+            report=lambda name: progress(STAGE, min(next(steps, 2), 2), 3, name),
+        )
+
+    choice = choose(samples)
+    unfit = choice.outliers
+    if options.drop_outliers and unfit.any():
+        choice = choose(samples.part(~unfit))
+    chosen = choice.chosen
+    assert chosen is not None  # the parametric model always is there
+    test = DenseTest(robot, gravity)
+    remarks = choice_in_words(choice, robot.joint_names)
+    if options.symmetries == "exact":
+        remarks += ("symmetries: those of the model; a --learner that is named has the robot's",)
+    return _Made(
+        chosen.learner,
+        chosen.name,
+        choice.samples.q,
+        choice.still,
+        len(choice.samples.q),
+        1,
+        (test.point(len(choice.samples.q), chosen.learner),),
+        remarks,
+        chosen.held_out,
+        unfit,
+        details=choice_document(choice, robot.joint_names),
+    )
+
+
+def _named(
+    options: DataOptions,
+    name: str,
+    samples: StaticSamples,
+    robot: Robot,
+    gravity: GravityModel,
+    task: LearningTask,
+    progress: Progress,
+) -> _Made:
+    """The learner that was named, with the relations that the data support."""
     stages = iter(range(4))
     found = RelationsOfData(samples, name, task).find(
         options.symmetries, gravity, lambda note: progress(STAGE, next(stages), 3, note)
@@ -148,43 +268,21 @@ def learn_from_data(options: DataOptions, out: Path, progress: Progress) -> Lear
     learner, curve = fitted_with_curve(
         name, task, group, samples.q[order], samples.tau[order], DenseTest(robot, gravity)
     )
-    progress(STAGE, next(stages), 3, "")
-    compared = disagreement(samples.q, samples.tau, gravity, leave_out=unfit)
-    copies = [samples.q[order]]
+    seen = [samples.q[order]]
     if group is not None:
-        copies = [wrap(relation.configuration(samples.q[order])) for relation in group]
-    beyond = extrapolation(learner, np.concatenate(copies), samples.tau[order], robot.limits)
-    return LearnedModel(
-        robot,
-        gravity,
+        seen = [wrap(relation.configuration(samples.q[order])) for relation in group]
+    return _Made(
         learner,
-        {
-            "strategy": "data",
-            "learner": name,
-            "symmetries": options.symmetries,
-            "extrapolation": beyond.document(),
-        },
+        name,
+        np.concatenate(seen),
+        samples.tau[order],
         len(order),
-        0,
         1 if group is None else group.order,
         curve,
-        (
-            *found.remarks,
-            *cause_remarks(learner, robot),
-            *([beyond.remark] if beyond.remark else []),
-            *outlier_remarks(tried, options.drop_outliers, WORST),
-            *analytic_remarks(compared, tried, samples, robot),
-        ),
-        {
-            "data": {
-                "file": str(options.file),
-                "rows": len(samples.q),
-                "outliers": _outliers(tried),
-                "symmetry_test": _symmetry_test(found.test),
-                "held_out": _held_out(tried),
-                "analytic": _analytic(compared),
-            }
-        },
+        found.remarks,
+        tried,
+        unfit,
+        found.test,
     )
 
 
@@ -204,13 +302,14 @@ def _record(robot: Robot, samples: StaticSamples, out: Path) -> None:
         recording.finish()
 
 
-def _outliers(tried: CrossValidation | None) -> dict[str, Any] | None:
+def _outliers(tried: CrossValidation | None, unfit: NDArray[np.bool_]) -> dict[str, Any] | None:
     if tried is None:
         return None
     worst = tried.worst(WORST)
+    rows = worst if len(unfit) == len(tried.outliers) else np.flatnonzero(unfit)[:WORST]
     return {
-        "count": int(tried.outliers.sum()),
-        "worst_rows": worst + 1,
+        "count": int(unfit.sum()),
+        "worst_rows": rows + 1,
         "errors": tried.errors[worst],
     }
 

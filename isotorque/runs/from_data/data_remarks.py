@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation
@@ -24,7 +25,9 @@ SYSTEMATIC = 2.0
 """Times the held-out error from which a disagreement is no accident of single samples."""
 
 
-def outlier_remarks(tried: CrossValidation | None, dropped: bool, count: int) -> tuple[str, ...]:
+def outlier_remarks(
+    tried: CrossValidation | None, unfit: NDArray[np.bool_], dropped: bool, count: int
+) -> tuple[str, ...]:
     """Say what held out rows tell: the error, and which rows do not fit the others."""
     if tried is None:
         return ("one pose only: no error on held out rows",)
@@ -36,10 +39,11 @@ def outlier_remarks(tried: CrossValidation | None, dropped: bool, count: int) ->
         way += " by pose"
     words = f"error on held out rows {tried.rmse:.4g} N m ({way}"
     words += f": {tried.poses.count} poses)" if tried.poses.repeated else ")"
-    if not tried.outliers.any():
+    if not unfit.any():
         return (f"{words}; no outliers",)
-    rows = ", ".join(str(i + 1) for i in tried.worst(count))
-    found = int(tried.outliers.sum())
+    worst = tried.worst(count) if len(unfit) == len(tried.outliers) else np.flatnonzero(unfit)
+    rows = ", ".join(str(i + 1) for i in worst[:count])
+    found = int(unfit.sum())
     more = " ..." if found > count else ""
     kept = "left out of the model" if dropped else "kept; --drop-outliers leaves them out"
     return (

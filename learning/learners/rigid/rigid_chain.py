@@ -38,6 +38,7 @@ from isotorque.learning.learners.rigid.structure.chain_symmetries import (
 from isotorque.learning.learners.rigid.structure.snapping import LEVEL, SnappedChain, snapped
 from isotorque.learning.learners.sample_checks import (
     checked_configurations,
+    checked_directions,
     checked_samples,
     require,
     require_fitted,
@@ -50,8 +51,8 @@ from isotorque.symbolic.common.errors import InputError
 
 Array = NDArray[np.float64]
 
-HELD = {Kind.OFFSET, Kind.GAIN, Kind.SIGN, Kind.SPRING}
-"""Causes that a chain can hold itself."""
+HELD = {Kind.OFFSET, Kind.GAIN, Kind.SIGN, Kind.SPRING, Kind.FRICTION}
+"""Causes that a chain can hold itself, or that are taken off its samples: friction."""
 TERMS = {ColumnShape.OFFSET: Shape.CONSTANT, ColumnShape.SPRING: Shape.ANGLE}
 """Terms of causes that columns of a chain are."""
 ROOM_FOR = {Kind.SPRING, Kind.CABLE}
@@ -105,6 +106,9 @@ class RigidChain(TorqueRegressor, SavedLearner):
         Everything about the fit.
     causes_ : tuple of Cause
         What it holds beside gravity because the samples show it (`with_causes`).
+    friction_ : (n,) array
+        Torque against the direction of the last motion that the samples show [N m], where the
+        directions were given. It was taken off the samples: it is no static torque.
     gain_groups_ : tuple of GainGroup
         Joints whose gains are known relative to each other.
 
@@ -135,6 +139,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
     _snapped: tuple[float, SnappedChain] | None
     _beside: BesideChain | None
     _diagnosis: Diagnosis | None
+    _sides: Array | None
     group: None = None  # symmetries follow from the chain; there is nothing to be told
 
     def __init__(
@@ -162,7 +167,9 @@ class RigidChain(TorqueRegressor, SavedLearner):
         self.window = window
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> RigidChain:
+    def fit(
+        self, X: Any, y: Any, sample_weight: Any = None, *, directions: Any = None
+    ) -> RigidChain:
         """Fit to samples, forgetting what was before.
 
         Parameters
@@ -173,6 +180,9 @@ class RigidChain(TorqueRegressor, SavedLearner):
             Torques that hold them [N m].
         sample_weight : (m,) array_like, optional
             Weights of the squared errors.
+        directions : (m, n) array_like, optional
+            Signs of the last motion of every joint before the arm came to rest, 0 where not known:
+            friction shows (`with_causes`).
 
         Returns
         -------
@@ -185,13 +195,17 @@ class RigidChain(TorqueRegressor, SavedLearner):
             If a number is NaN or infinite, a parameter of the learner is unusable, or there is
             not one torque per joint.
         """
-        return self._fit(X, y, sample_weight, None)
+        return self._fit(X, y, sample_weight, directions, None)
 
-    def _fit(self, X: Any, y: Any, sample_weight: Any, near: ChainParameters | None) -> RigidChain:
+    def _fit(
+        self, X: Any, y: Any, sample_weight: Any, directions: Any, near: ChainParameters | None
+    ) -> RigidChain:
         """Fit, from the rotations and gains of another chain first."""
         self._check_parameters()
         q, torque, weights = checked_samples(self, X, y, sample_weight, first=True)
+        sides = checked_directions(directions, q.shape)
         self._start(q.shape[1], torque.shape[1], np.ndim(y) == 1)
+        self._sides = None if sides is None else sides[weights > 0]
         start, model = None, self._model
         if near is not None:
             gains = np.where(model.free_gains, near.gains, model.gains)
@@ -213,6 +227,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
             np.concatenate([old.torque, torque]),
             np.concatenate([old.weights, weights]),
         )
+        self._sides = None  # those of older samples do not fit these
         self._learn(both.part(slice(-self.window, None)), self.fit_.chain)
         self.n_samples_seen_ = seen + len(q)
         return self
@@ -323,15 +338,28 @@ class RigidChain(TorqueRegressor, SavedLearner):
         found = self.diagnosis()
         return found.causes if self.verdict_.accepted or found.clear else ()
 
+    def shown_friction(self) -> Array:
+        """Friction (n,) [N m] that the samples show, whatever else they show; 0 where none."""
+        if self.friction_.any() or not self.shown_causes():
+            return self.friction_
+        selection = self.diagnosis().selection
+        found = np.zeros(self.fit_.model.n)
+        for term, value in (selection.fit.values if selection else {}).items():
+            if term.shape is Shape.DIRECTION:
+                found[term.place] = value[0]
+        return found
+
     def with_causes(self) -> RigidChain | None:
         """The same samples with the constants, springs and gains that they show beside the chain.
+
+        Friction that they show is taken off them (``friction_``).
 
         Returns
         -------
         RigidChain or None
             None where nothing is shown (`shown_causes`), a cause could be anything but a constant,
-            a spring or a gain, or no chain is accepted with them. ``causes_`` of the result are
-            those of this one.
+            a spring, friction or a gain, or no chain is accepted with them. ``causes_`` of the
+            result are those of this one.
         """
         causes = self.shown_causes()
         kinds = {cause.kind for cause in causes}
@@ -349,6 +377,8 @@ class RigidChain(TorqueRegressor, SavedLearner):
             if cause.kind in (Kind.GAIN, Kind.SIGN):
                 free[joints] = True
                 continue
+            if cause.kind is Kind.FRICTION:
+                continue
             offsets.update(joints)
             springs.update(joints if cause.kind is Kind.SPRING else ())
         again = clone(self).set_params(
@@ -360,7 +390,11 @@ class RigidChain(TorqueRegressor, SavedLearner):
             again.set_params(unknown_gains=True, known_gains=known)
         selection = self.diagnosis().selection
         assert selection is not None  # causes were selected
-        again._fit(samples.q, samples.torque, samples.weights, selection.fit.chain)
+        fit, torque, friction = selection.fit, samples.torque, self.shown_friction()
+        if self._sides is not None:
+            torque = torque - friction * self._sides
+        again._fit(samples.q, torque, samples.weights, None, fit.chain)
+        again.friction_ = friction
         if not again.verdict_.accepted:
             return None
         again.causes_ = causes
@@ -427,6 +461,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
         return diagnose(
             samples.q,
             samples.torque,
+            directions=self._sides,
             weight=samples.weights,
             torque_noise=self.torque_noise,
             angle_noise=self.angle_noise,
@@ -480,6 +515,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
 
     def _take(self, fit: ChainFit) -> None:
         self.fit_, self._errors, self._snapped = fit, None, None
+        self.friction_ = np.zeros(fit.model.n)
         self.causes_: tuple[Cause, ...] = ()
         self._beside, self._diagnosis = None, None
 
@@ -510,6 +546,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
             "torque_errors": samples.torque_noise,
             "weights": samples.weights,
             "free_gains": self.fit_.model.free_gains,
+            "friction": self.friction_,
         }
 
     def _restore(self, arrays: dict[str, NDArray], state: Mapping[str, Any]) -> None:
@@ -528,6 +565,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
                 chain, samples, model, self._model.free_gains, verdict, int(state["starts"]), **more
             )
         )
+        self.friction_ = arrays.get("friction", self.friction_)
         self.gain_groups_ = tuple(GainGroup(tuple(j), bool(k)) for j, k in state["groups"])
         self.causes_ = tuple(Cause.from_json(found) for found in state.get("causes", ()))
 
@@ -566,6 +604,7 @@ class RigidChain(TorqueRegressor, SavedLearner):
             tuple(columns),
         )
         self._flat = flat
+        self._sides = None
         self.n_outputs_ = outputs
         self.n_samples_seen_ = 0
 

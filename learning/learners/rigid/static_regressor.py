@@ -14,6 +14,7 @@ from scipy.linalg import lstsq
 
 from isotorque.learning.learners.base import SavedLearner
 from isotorque.learning.learners.rigid.causes.beside_gravity import (
+    HELD,
     BesideGravity,
     ShownBeside,
     shown_beside,
@@ -28,6 +29,8 @@ from isotorque.learning.learners.sample_checks import (
 from isotorque.learning.learners.symmetry_coordinates import GroupArrays, SymmetryCoordinates
 from isotorque.learning.learners.torque_score import TorqueRegressor
 from isotorque.learning.statistics.causes.cause import Cause
+from isotorque.learning.statistics.causes.extended_fit import cause_columns
+from isotorque.learning.statistics.causes.extension import Term
 from isotorque.learning.statistics.noise_levels import whitening_of
 from isotorque.learning.statistics.poses import by_pose_and_side
 from isotorque.learning.statistics.shrinkage import shrunk_least_squares
@@ -70,6 +73,8 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         change of payload: the model is of the arm before it).
     offsets_ : (n,) array
         Constants among them [N m]; 0 where the samples show none.
+    levels_ : (n,) array
+        Standard deviation of the torque errors of every joint relative to the others.
     rank_ : int
         Number of combinations of parameters that the samples determine.
 
@@ -159,10 +164,15 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         found, self.rank_, self._root = self._solved(columns, torque, shown.whitening)
         count = own.shape[2]
         self.parameters_, self.beside_ = found[:count], shown.beside(found[count:])
-        self._shown = shown
+        self._shown, self.levels_ = shown, shown.levels
         if self.group is not None:
             self._settle_by_copies(q, torque, weights)
         return self
+
+    def near(self) -> NearRegressor:
+        """A regressor with the same causes, to be fitted to other samples, friction taken off."""
+        require_fitted(self)
+        return NearRegressor(self)
 
     def gravity(self, X: Any) -> Array:
         """True torques (m, n) [N m] of gravity alone at configurations (m, n) [rad]."""
@@ -327,6 +337,37 @@ class StaticRegressor(TorqueRegressor, SavedLearner):
         self._flat = flat
         self.n_outputs_ = outputs
         self.n_samples_seen_ = 0
+
+
+class NearRegressor:
+    """A regressor with the gains and causes of another, fitted to other samples.
+
+    Parameters
+    ----------
+    learner : StaticRegressor
+        Fitted.
+    """
+
+    def __init__(self, learner: StaticRegressor) -> None:
+        self._learner, beside = learner, learner.beside_
+        self._gains = beside.gains
+        self._held = [Term(HELD[k], int(j)) for j, k in np.argwhere(beside.coefficients != 0.0)]
+        self._found = np.zeros(0)
+
+    def fit(self, q: Array, torque: Array) -> NearRegressor:
+        """Fit to samples (m, n) [rad], [N m]."""
+        levels = self._learner.levels_
+        whitening = whitening_of(levels, None, np.ones(len(q)))
+        self._found = self._learner._solved(self._columns(q), torque, whitening)[0]
+        return self
+
+    def predict(self, q: Array) -> Array:
+        """Torques (m, n) [N m]."""
+        return np.asarray(self._columns(q) @ self._found)
+
+    def _columns(self, q: Array) -> Array:
+        own = self._gains[:, None] * self._learner._regressors(q)
+        return np.concatenate([own, cause_columns(self._held, q, q, None, None)], axis=2)
 
 
 def _kinematics(robot: Robot) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isotorque.learning.statistics.causes.extensible_model import F
-from isotorque.learning.statistics.causes.extension import Kind
+from isotorque.learning.statistics.causes.extension import Kind, Shape
 from isotorque.learning.statistics.causes.selection import Choice, Selection
 
 Array = NDArray[np.float64]
@@ -33,6 +33,8 @@ class Cause:
         Torque that it adds, RMS over the samples, at the joint where that is largest [N m].
     rivals : tuple of (Kind, int or None)
         Causes that cannot be told apart with these samples, this one first.
+    since : int or None
+        First sample with it, from 0: of a change of the payload.
     """
 
     kind: Kind
@@ -42,6 +44,7 @@ class Cause:
     p_value: float
     effect: float
     rivals: tuple[tuple[Kind, int | None], ...]
+    since: int | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Everything as plain numbers and names; joints from 0."""
@@ -53,7 +56,7 @@ class Cause:
             "p_value": self.p_value,
             "effect": self.effect,
             "rivals": [[str(kind), joint] for kind, joint in self.rivals],
-        }
+        } | ({} if self.since is None else {"since": self.since})
 
     @classmethod
     def from_json(cls, found: Mapping[str, Any]) -> Cause:
@@ -67,6 +70,7 @@ class Cause:
             float(found["p_value"]),
             float(found["effect"]),
             tuple((Kind(kind), joint) for kind, joint in found["rivals"]),
+            found.get("since"),
         )
 
     def joints(self, count: int) -> list[int]:
@@ -103,4 +107,5 @@ def _cause(selection: Selection[F], choice: Choice, joints: Sequence[int] | None
         choice.p_value,
         effect,
         tuple((rival.kind, numbered(rival.joint)) for rival in choice.rivals),
+        next((term.place for term in terms if term.shape is Shape.LOAD), None),
     )

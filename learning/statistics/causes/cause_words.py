@@ -63,6 +63,8 @@ def causes_in_words(causes: Sequence[Cause], names: Sequence[str] = ()) -> str:
 
 def _in_words(cause: Cause, names: Sequence[str]) -> str:
     place = _place(cause.joint, cause.kind, names)
+    if cause.since is not None:
+        place = f" from sample {cause.since + 1} on"
     said = f"{NAMES[cause.kind]}{_size(cause)}{place}{_error(cause)}"
     if cause.kind is Kind.OFFSET:
         said += OR_FRICTION

@@ -141,6 +141,8 @@ def selected(model: ExtensibleModel[F], null: F, *, level: float = FAMILY_WISE) 
         if not significant:
             break
         best, rivals = _simplest(significant, found)
+        if best.extension.kind is Kind.PAYLOAD:
+            best = _at_its_first_sample(model, fit, best)
         largest = float(np.abs(model.torque).max())
         if np.abs(best.fit.effect(best.extension.terms)).max() < NEGLIGIBLE * largest:
             break
@@ -215,6 +217,18 @@ def _best(model: ExtensibleModel[F], fit: F) -> tuple[F, list[Candidate[F]], int
     scored = [_scored(model, fit, *entry) for entry in fits]
     scored.sort(key=lambda candidate: -candidate.score)
     return fit, scored, len(seen)
+
+
+def _at_its_first_sample(model: ExtensibleModel[F], fit: F, best: Candidate[F]) -> Candidate[F]:
+    """A change of the payload at the sample that explains most: it was sought at few."""
+    every = [Extension.payload(first) for first in range(1, len(model.q))]
+    taken, degrees = explained_to_first_order(fit, every)
+    taken[degrees < best.degrees] = 0.0  # too few samples on one side
+    better = every[int(np.argmax(taken))]
+    again = model.refitted(_with(fit.terms, better), best.fit)
+    if not again.plausible() or again.cost >= best.fit.cost:
+        return best
+    return replace(best, extension=better, fit=again)
 
 
 def _with(terms: Sequence[Term], extension: Extension) -> tuple[Term, ...]:

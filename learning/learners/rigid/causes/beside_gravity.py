@@ -105,6 +105,8 @@ class ShownBeside:
         Of the model, as they were found.
     whitening : (m, n, n) array
         Of the errors at all samples, of size about 1.
+    levels : (n,) array
+        Noise of every joint in the same unit.
     causes : tuple of Cause
     """
 
@@ -112,6 +114,7 @@ class ShownBeside:
     gains: Array
     unknowns: Array
     whitening: Array
+    levels: Array
     causes: tuple[Cause, ...]
 
     def columns(self, q: Array, own: Array, directions: Array | None) -> Array:
@@ -188,7 +191,7 @@ def shown_beside(
     rank = int(np.linalg.matrix_rank(columns)) if columns.size else 0
     whitening = whitening_of(np.ones(n), None, weights)
     if len(taken) * n < rank + SPARE * n or not torque[taken].any():
-        return ShownBeside((), np.ones(n), np.zeros(own.shape[2]), whitening, ())
+        return ShownBeside((), np.ones(n), np.zeros(own.shape[2]), whitening, np.ones(n), ())
     model = LinearModel.of(
         q[taken],
         torque[taken],
@@ -206,7 +209,9 @@ def shown_beside(
     else:
         whitening = whitening_of(selection.model.noise, None, weights)
     size = np.sqrt(np.mean(np.einsum("kii->ki", whitening[used]) ** 2))
-    return ShownBeside(terms, fit.gains, fit.unknowns, whitening / size, causes_of(selection))
+    levels = selection.model.noise * size
+    causes = causes_of(selection)
+    return ShownBeside(terms, fit.gains, fit.unknowns, whitening / size, levels, causes)
 
 
 def _placed(term: Term, taken: NDArray[np.intp]) -> Term:

@@ -292,6 +292,12 @@ class RigidChainProcess(TorqueRegressor, SavedLearner):
         return self._q.min(axis=0), self._q.max(axis=0)
 
     @property
+    def samples_(self) -> tuple[Array, Array]:
+        """Configurations and torques (m, n) that it was fitted to [rad], [N m]."""
+        require_fitted(self)
+        return self._q, self._torque
+
+    @property
     def accepted_models(self) -> tuple[ChainWithProcesses, ...]:
         """The models whose mean is predicted.
 

@@ -139,12 +139,41 @@ def test_what_is_no_rigid_chain_is_not_a_model(robot, change, reading, tmp_path,
     """What it would be if it were read otherwise is said; a cable is no reading."""
     data, out = tmp_path / "poses.csv", tmp_path / "out"
     recording(data, 20, noise=0.02, change=change, robot=robot)
-    assert isotorque("learn", "--data", data, "--out", out, "--torque-noise", 0.02) == 1
+    options = ("--learner", "rigid-chain") if reading is None else ()
+    assert isotorque("learn", "--data", data, "--out", out, "--torque-noise", 0.02, *options) == 1
     said = capsys.readouterr().out
     assert "no chain that was found explains" in said
     assert ("explains all of them if" in said) == (reading is not None)
     assert (reading or "") in said
     assert not out.exists()
+
+
+def test_what_is_beside_the_chain_is_learned_by_processes_and_named(tmp_path, capsys):
+    data, out = tmp_path / "poses.csv", tmp_path / "out"
+    recording(data, 30, 0.02, 0, lambda q, tau: (q, tau + [0, 2, 0] * np.sin(2.0 * q)), "3r")
+    assert isotorque("learn", "--data", data, "--out", out) == 0
+    said = capsys.readouterr().out
+    assert "a rigid chain with Gaussian processes predicts samples that were left out" in said
+    assert "beside gravity: a torque of twice the angle (a cable, a bent link) of 2" in said
+    assert " on shoulder" in said
+    assert "; rigid-chain " in said
+    assert not (out / "relations.json").exists()
+    q = np.random.default_rng(2).uniform(-2.0, 2.0, (100, 3))
+    true = GravityModel(load_robot("3r")).torque(q) + [0, 2, 0] * np.sin(2.0 * q)
+    assert np.sqrt(np.mean((load_model(out).learner.predict(q) - true) ** 2)) < 0.2
+
+
+def test_errors_at_poses_left_out_are_those_of_further_poses(tmp_path, capsys):
+    data = tmp_path / "poses.csv"
+    recording(data, 40, 0.05, 3, robot="3r")
+    assert isotorque("learn", "--data", data, "--out", tmp_path / "out", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    q = np.random.default_rng(5).uniform(-3.0, 3.0, (400, 3))
+    fresh = GravityModel(load_robot("3r")).torque(q)
+    fresh = fresh + 0.05 * np.random.default_rng(6).normal(size=q.shape)
+    error = np.sqrt(np.mean((load_model(tmp_path / "out").learner.predict(q) - fresh) ** 2))
+    assert found["learner"] == "rigid-chain"
+    assert 0.8 < found["held_out"]["rmse"] / error < 1.25
 
 
 @pytest.mark.parametrize(

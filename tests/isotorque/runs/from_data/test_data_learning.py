@@ -55,9 +55,12 @@ def test_a_clean_recording_agrees_with_the_robot(learn, tmp_path):
 
 def test_the_default_learner_is_saved_and_judged(learn, tmp_path):
     found = learn(tmp_path, recording(tmp_path / "arm.csv", 25))
-    assert found["learner"] == "gaussian-process"
-    assert [p["samples"] for p in found["curve"]] == [8, 16, 25]
-    assert found["rmse_torque"] < 0.1
+    assert found["learner"] == "parametric"
+    assert [p["samples"] for p in found["curve"]] == [25]
+    assert found["rmse_torque"] < 0.02
+    tried = found["data"]["contenders"]
+    assert set(tried) == {"parametric", "rigid-chain", "rigid-chain+gaussian-process"}
+    assert tried["parametric"]["rmse"] == pytest.approx(NOISE, rel=0.3)
     assert status(["verify", str(tmp_path), "--robot", "2r", "--tolerance", "0.1"]) == 0
 
 

@@ -138,9 +138,9 @@ def test_causes_are_named_and_predicted_but_friction(robot, kind):
 def test_the_model_is_of_the_arm_before_its_payload_changed(arm):
     q, tau = recorded(arm, 40, 6, 0.02)
     heavier = tau.copy()
-    heavier[20:] += 0.3 * 9.81 * np.cos(q[20:].sum(axis=1))[:, None] * [1.0, 1.0]
+    heavier[23:] += 0.3 * 9.81 * np.cos(q[23:].sum(axis=1))[:, None] * [1.0, 1.0]
     learner = StaticRegressor("2r").fit(q, heavier)
-    assert [str(cause.kind) for cause in learner.causes_] == ["payload"]
+    assert [(str(c.kind), c.since) for c in learner.causes_] == [("payload", 23)]
     assert np.sqrt(np.mean((learner.predict(FAR) - arm.torque(FAR)) ** 2)) < 0.02
 
 
