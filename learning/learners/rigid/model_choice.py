@@ -151,7 +151,7 @@ def choose_model(
     seed : int
         Of random starts and of the parts that are left out.
     joint_names : tuple of str
-        For remarks.
+        For remarks; by default joints are numbered from 1.
     report : callable
         Called with the name of each model before it is learned.
 
@@ -182,6 +182,7 @@ def choose_model(
     rows = np.ones(len(samples.q))
     q, tau, sides, _ = by_pose_and_side(samples.q, samples.tau, samples.directions, rows)
     label = poses_and_sides(samples.q, samples.directions).label
+    joint_names = joint_names or tuple(f"joint {j + 1}" for j in range(q.shape[1]))
     chooser = _Chooser(robot, torque_noise, angle_noise, seed, joint_names, report)
     return chooser.choose(StaticSamples(q, tau, directions=sides), label)
 
