@@ -143,7 +143,7 @@ def read_json(path: str | Path) -> Field:
     try:
         value = json.loads(
             text,
-            parse_constant=lambda name: _refuse_constant(where, name),
+            parse_constant=float,
             object_pairs_hook=lambda pairs: _without_repetition(where, pairs),
         )
     except json.JSONDecodeError as error:
@@ -155,11 +155,22 @@ def read_json(path: str | Path) -> Field:
         raise
     except ValueError as error:  # an integer of more digits than Python converts
         raise InputError(where, "a number", error, "a finite number") from None
-    return Field(where, "", value)
+    field = Field(where, "", value)
+    if any(name in text for name in ("NaN", "Infinity")):
+        _refuse_constants(field)
+    return field
 
 
-def _refuse_constant(where: str, name: str) -> NoReturn:
-    raise InputError(where, "a number", name, "finite numbers")
+def _refuse_constants(field: Field) -> None:
+    """Refuse NaN and Infinity, which JSON does not know, wherever they stand."""
+    if isinstance(field.value, list):
+        for item in field.items():
+            _refuse_constants(item)
+    elif isinstance(field.value, dict):
+        for key in field.value:
+            _refuse_constants(field.entry(key))
+    elif isinstance(field.value, float) and not math.isfinite(field.value):
+        field.refuse("a finite number")
 
 
 def _without_repetition(where: str, pairs: list[tuple[str, Any]]) -> dict[str, Any]:

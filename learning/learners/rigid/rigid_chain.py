@@ -594,7 +594,8 @@ class RigidChain(TorqueRegressor, SavedLearner):
             ("unknown_springs", ColumnShape.SPRING),
         ):
             stated = getattr(self, name)
-            wanted = [stated] * joints if isinstance(stated, bool | np.bool_) else list(stated)
+            one = isinstance(stated, bool | np.bool_)
+            wanted = [stated] * joints if one else list(stated) if np.ndim(stated) == 1 else []
             require(self, name, len(wanted) == joints, f"True, False, or {joints} of them")
             columns += [JointColumn(j, shape) for j in range(joints) if wanted[j]]
         self._model = ChainModel(

@@ -202,6 +202,7 @@ def test_a_sign_is_a_gain():
         ({"torque_noise": -1.0}, "torque_noise"),
         ({"angle_noise": [0.1, 0.1]}, "angle_noise"),
         ({"unknown_offsets": [True, False]}, "unknown_offsets"),
+        ({"unknown_springs": 5}, "unknown_springs"),
         ({"unknown_springs": [True, False]}, "unknown_springs"),
         ({"max_starts": 0}, "max_starts"),
         ({"window": 0.5}, "window"),
