@@ -19,19 +19,19 @@ from isotorque.learning.learners.rigid.fitting.fit_status import FitStatus
 from isotorque.learning.learners.rigid.fitting.gains import GainGroup
 from isotorque.learning.learners.rigid.fitting.known_load import gain_from_load
 from isotorque.learning.learners.rigid.misread_samples import other_reading
-from isotorque.learning.learners.rigid.model_choice import (
-    RIGID,
-    WITH_PROCESS,
-    Contender,
-    ModelChoice,
-    choose_model,
-)
 from isotorque.learning.learners.rigid.process.rigid_chain_process import RigidChainProcess
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
 from isotorque.learning.learners.rigid.structure.chain_symmetries import ChainSymmetries
 from isotorque.learning.statistics.causes.cause import Cause
 from isotorque.learning.statistics.causes.cause_words import causes_in_words
 from isotorque.learning.statistics.poses import by_pose_and_side
+from isotorque.runs.from_data.model_choice import (
+    RIGID,
+    WITH_PROCESS,
+    Contender,
+    ModelChoice,
+    choose_model,
+)
 from isotorque.runs.from_data.poses_to_take import poses_to_take
 from isotorque.runs.stages import DATABASE
 from isotorque.symbolic.common.errors import InputError

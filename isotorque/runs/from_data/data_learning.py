@@ -14,11 +14,6 @@ from isotorque.learning.files.run_info import RunInfo
 from isotorque.learning.files.static_samples import StaticSamples
 from isotorque.learning.learners.cross_validation import CrossValidation
 from isotorque.learning.learners.registry import LearningTask
-from isotorque.learning.learners.rigid.model_choice import (
-    ModelChoice,
-    choice_in_words,
-    choose_model,
-)
 from isotorque.learning.recordings.recorded_data import record_samples
 from isotorque.learning.recordings.recording import Recording
 from isotorque.learning.relations.testing.supported_group import SupportedGroup
@@ -30,6 +25,11 @@ from isotorque.runs.from_data.data_remarks import (
     analytic_remarks,
     cause_remarks,
     outlier_remarks,
+)
+from isotorque.runs.from_data.model_choice import (
+    ModelChoice,
+    choice_in_words,
+    choose_model,
 )
 from isotorque.runs.lattice_learning import fitted_with_curve
 from isotorque.runs.learned_model import LearnedModel

@@ -16,7 +16,6 @@ from isotorque.learning.learners.rigid.process.rigid_chain_process import (
     conditioned,
 )
 from isotorque.learning.learners.rigid.rigid_chain import RigidChain
-from isotorque.learning.learners.rigid.static_regressor import StaticRegressor
 
 Array = NDArray[np.float64]
 
@@ -29,6 +28,13 @@ class NearFit(Protocol):
 
     def predict(self, q: Array) -> Array:
         """Torques (m, n) [N m] at configurations (m, n) [rad]."""
+
+
+class HasNear(Protocol):
+    """A learner that knows itself what is near it."""
+
+    def near(self) -> NearFit:
+        """A model to be fitted again."""
 
 
 class NearChain:
@@ -86,7 +92,7 @@ class NearChainWithProcesses:
         return np.asarray(np.mean([model.torque(q) for model in self._models], axis=0))
 
 
-def near_fit(learner: RigidChain | StaticRegressor | RigidChainProcess) -> NearFit:
+def near_fit(learner: RigidChain | RigidChainProcess | HasNear) -> NearFit:
     """A model like one that was fitted, to be fitted to a part of its samples, friction taken off.
 
     Causes beside gravity and the levels of the noise stay what all samples showed; everything else
@@ -104,6 +110,6 @@ def near_fit(learner: RigidChain | StaticRegressor | RigidChainProcess) -> NearF
     """
     if isinstance(learner, RigidChain):
         return NearChain(learner.fit_)
-    if isinstance(learner, StaticRegressor):
-        return learner.near()
-    return NearChainWithProcesses(learner.models_, *learner.samples_)
+    if isinstance(learner, RigidChainProcess):
+        return NearChainWithProcesses(learner.models_, *learner.samples_)
+    return learner.near()

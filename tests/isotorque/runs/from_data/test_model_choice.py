@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from isotorque.learning.files.static_samples import StaticSamples
-from isotorque.learning.learners.rigid.model_choice import (
+from isotorque.runs.from_data.model_choice import (
     MANY,
     PARAMETRIC,
     RIGID,
