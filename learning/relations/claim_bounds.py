@@ -48,7 +48,8 @@ def claim_bounds(
     -----
     A relation ``tau' = Y tau`` of the measured torque is off by ``(I - Y) b`` through constants b,
     and by up to twice the size of any other torque that does not follow it. An alternative that
-    was not seen may still be there, as large as its estimate and so many standard errors.
+    was not seen may still be there, as large as its estimate and so many standard errors. A joint
+    whose torque never stood out of the noise may hold as much as was seen of it.
     """
     bound, _ = torque_uncertainty(fit, group, deviations)
     gravity = fit.without_constants(lack.offset_joints)
@@ -68,6 +69,9 @@ def claim_bounds(
                 kept = (unit == relation.A).all(axis=1) & (relation.d == 0.0) & (relation.Y > 0.0)
             wider[i] += np.where(kept, 0.0, 2.0 * other.size)
         bound = np.maximum(bound, wider)
+    if lack.silent is not None:
+        moved = [not relation.is_identity for relation in relations]
+        bound = bound + np.outer(moved, 2.0 * lack.silent)
     return bound, rms
 
 

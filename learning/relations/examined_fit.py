@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,7 +110,9 @@ def examined_fit(q: Array, tau: Array, noise: MeasurementNoise | None) -> Examin
             f"rigid gravity and constants do not explain exactly; {least} show how large a spring "
             "or a cable may be"
         )
-    return ExaminedFit(fit, lack, unmoved)
+    carrying = fit.frequencies.any(axis=0)
+    silent = np.where(carrying, 0.0, np.abs(torques).max(axis=0))
+    return ExaminedFit(fit, replace(lack, silent=silent), unmoved)
 
 
 def _explained(fit: FittedPotential, tau: Array) -> bool:

@@ -87,6 +87,8 @@ class LackOfFit:
         What is left, if that is more than sensors leave: further samples will not help.
     rates : (n,) array or None
         Spring rates that a chain holds [N m/rad].
+    silent : (n,) array or None
+        Largest torque seen of joints that were taken for joints without any [N m], 0 for others.
     """
 
     causes: tuple[Cause, ...]
@@ -98,6 +100,7 @@ class LackOfFit:
     said: str
     left: str = ""
     rates: Array | None = None
+    silent: Array | None = None
 
     @property
     def correction(self) -> Correction:

@@ -5,10 +5,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isotorque.learning.relations.claim_bounds import claim_bounds
+from isotorque.learning.relations.identification.wave_identification import identify_by_waves
 from isotorque.learning.relations.lack_of_fit import Alternative, LackOfFit, lack_of_fit
+from isotorque.learning.relations.potential.errors_in_variables import MeasurementNoise
 from isotorque.learning.relations.potential.potential_fit import all_frequencies, fit_potential
 from isotorque.symbolic.common.angles import wrap
 from isotorque.symbolic.groups.group_arrays import CandidateGroup, lifted_relations
+from isotorque.symbolic.groups.symmetry_relation import SymmetryRelation
+from isotorque.symbolic.polynomials.trigonometric_polynomial import TrigonometricPolynomial
 from tests.learning.static_data import known_potential
 
 seeds = st.integers(0, 2**32 - 1)
@@ -72,3 +76,30 @@ def test_a_torque_that_may_be_there_is_allowed_for_on_both_sides(seed, name, siz
     assert (error <= bound + 1e-9).all()
     # some relation turns the torque round where it is largest: less would be too little
     assert (error.max(axis=0) > 1.5 * largest).any()
+
+
+@given(seeds, st.floats(0.02, 0.1))
+@settings(max_examples=10)
+def test_a_joint_that_never_stands_out_of_the_noise_may_hold_what_was_seen_of_it(seed, lever):
+    """It was taken for a joint without torque, and the bound of its sign was rounding."""
+    potential = TrigonometricPolynomial(
+        [[1, 0, 0], [1, 1, 0], [1, 1, 1]], [0.0] * 3, [18.4, 6.1, lever]
+    )
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(-np.pi, np.pi, (60, 3))
+    tau = potential.gradient(q) + 0.05 * rng.normal(size=q.shape)
+    found = identify_by_waves(q, tau, noise=MeasurementNoise(0.0, 0.05))
+    if np.abs(tau[:, 2]).max() > 0.25 or found.missing:
+        return  # it stands out
+    far = rng.uniform(-np.pi, np.pi, (1000, 3))
+    here = potential.gradient(far)
+    for learned in found.relations:
+        relation = learned.relation
+        flipped = SymmetryRelation(
+            relation.A, relation.unwrapped_d, relation.Y * [1, 1, -1], relation.basis
+        )
+        for one in (relation, flipped):  # the samples do not tell which
+            error = np.abs(potential.gradient(one.configuration(far)) - one.torque(here))
+            if not relation.is_identity:
+                assert error[:, 2].max() <= relation.bound[2] + 1e-9
+    assert found.order > 1
