@@ -141,11 +141,11 @@ def selected(model: ExtensibleModel[F], null: F, *, level: float = FAMILY_WISE) 
         if not significant:
             break
         best, rivals = _simplest(significant, found)
-        if best.extension.kind is Kind.PAYLOAD:
-            best = _at_its_first_sample(model, fit, best)
         largest = float(np.abs(model.torque).max())
         if np.abs(best.fit.effect(best.extension.terms)).max() < NEGLIGIBLE * largest:
             break
+        if best.extension.kind is Kind.PAYLOAD:
+            best = _at_its_first_sample(model, fit, best)
         named = tuple(_renamed(c.extension, c.fit) for c in (best, *rivals))
         choices.append(Choice(named[0], float(np.exp(best.log_p) * tried), named))
         fit = model.refitted(best.fit.terms, best.fit, thorough=True)
