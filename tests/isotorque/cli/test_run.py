@@ -170,7 +170,7 @@ def test_arms_of_any_size_pass(factor, tmp_path, capsys):
         ["run"],
         ["learn"],
         ["learn", "--strategy", "lattice"],
-        ["learn", "--data", "arm.csv", "--symmetries", "exact"],
+        ["learn", "--data", "arm.csv", "--symmetries", "exact", "--learner", "gaussian-process"],
     ],
 )
 def test_more_symmetries_than_can_be_listed_are_refused_at_once(
