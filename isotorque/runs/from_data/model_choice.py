@@ -176,8 +176,8 @@ def choose_model(
     >>> found = choose_model(StaticSamples(q, tau))
     >>> print(found.chosen.name, [str(cause.kind) for cause in found.causes])
     rigid-chain ['offset']
-    >>> print(round(found.chosen.held_out.rmse, 2))
-    0.05
+    >>> bool(0.04 < found.chosen.held_out.rmse < 0.065)  # the noise is 0.05
+    True
     """
     rows = np.ones(len(samples.q))
     q, tau, sides, _ = by_pose_and_side(samples.q, samples.tau, samples.directions, rows)
